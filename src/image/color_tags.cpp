@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/color_tags.h"
 #include "base/format_number.h"
+#include "tonewright/format_color.h"
 
 #include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
@@ -72,36 +73,6 @@ Primaries primaries_of(const OIIO::ImageSpec& spec) {
     std::copy_n(static_cast<const float*>(xy->data()), p.size(), p.begin());
     return {"chromaticities", {p[0], p[1]}, {p[2], p[3]}, {p[4], p[5]}, {p[6], p[7]}};
 }
-
-/// The color that viewers assume for a file that does not state one, or for which OpenImageIO
-/// cannot write it.
-struct FormatColor {
-    std::string_view format;
-    std::string_view title;
-    bool has_icc = false;
-    bool has_power = false;  // the power of its code values
-    // For some formats, applications always assume linear light; for others, sRGB.
-    bool is_linear = false;
-};
-constexpr std::array kFormats = {
-    FormatColor{"png", "PNG", true, true},
-    FormatColor{"jpeg", "JPEG", true},
-    FormatColor{"tiff", "TIFF", true},
-    FormatColor{"webp", "WebP"},
-    FormatColor{"heif", "HEIF"},
-    FormatColor{"jpeg2000", "JPEG 2000"},
-    FormatColor{"gif", "GIF"},
-    FormatColor{"bmp", "BMP"},
-    FormatColor{"ico", "ICO"},
-    FormatColor{"iff", "IFF"},
-    FormatColor{"pnm", "PNM"},
-    FormatColor{"sgi", "SGI"},
-    FormatColor{"rla", "RLA", false, true},
-    FormatColor{"targa", "Targa", false, true},
-    FormatColor{"dpx", "DPX", false, true},
-    FormatColor{"hdr", "Radiance HDR", false, false, true},
-    FormatColor{"openexr", "OpenEXR", false, false, true},
-};
 
 Claim claim_of_display(std::string_view name) {
     if (name == kLinearOutput) return {"Linear", kRec709, "lin_rec709"};
@@ -266,11 +237,10 @@ std::optional<TaggedColor> tagged_color(const OIIO::ImageSpec& spec) {
 }
 
 ColorDescription describe_color(const OIIO::ImageSpec& spec, std::string_view format) {
-    const auto* row = std::find_if(kFormats.begin(), kFormats.end(),
-                                   [&](const FormatColor& f) { return f.format == format; });
+    const FormatColor* row = find_format_color(format);
     const std::optional<TaggedColor> color = tagged_color(spec);
     // The rest keep the attributes themselves.
-    if (row == kFormats.end() || !color) return {};
+    if (!row || !color) return {};
     const bool is_png = format == "png";
     const bool is_srgb = color->curve && color->curve->is_srgb && color->primaries == kRec709;
     const bool is_linear = color->curve && color->curve->exponent == 1;
@@ -285,11 +255,13 @@ ColorDescription describe_color(const OIIO::ImageSpec& spec, std::string_view fo
         said.chunk = cicp_chunk(*color->code_points);
         return said;
     }
-    const bool is_presumed = row->is_linear ? is_linear : is_srgb;
+    // For some formats, applications always assume linear light; for others, sRGB.
+    const bool assumes_linear = row->meaning == FormatMeaning::linear;
+    const bool is_presumed = assumes_linear ? is_linear : is_srgb;
     const bool is_said =
         row->has_power && color->curve && !color->curve->is_srgb && color->primaries == kRec709;
     if (is_presumed || is_said) return {};
-    said.missing = row->is_linear
+    said.missing = assumes_linear
                        ? fmt::format(
                              "most applications read {} as linear light, but the file holds code "
                              "values of {}; for linear light, use --display linear",

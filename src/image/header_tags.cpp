@@ -76,6 +76,12 @@ class HeaderFile {
         std::getline(file_, text);
         return text;
     }
+    /// Text that ends with a byte 0; names of OpenEXR have 255 characters at most.
+    std::string name() {
+        std::array<char, 256> text{};
+        file_.getline(text.data(), text.size(), '\0');
+        return text.data();
+    }
 
   private:
     std::ifstream file_;
@@ -359,18 +365,22 @@ void read_bmp(HeaderFile& file, ImageSpec& spec) {
 }
 
 /// TIFF 6.0 and BigTIFF: the tags of color that OpenImageIO does not list.
-void read_tiff(HeaderFile& file, ImageSpec& spec) {
+void read_tiff(HeaderFile& file, int page, ImageSpec& spec) {
     const std::string start = file.bytes(8);
     if (start.size() != 8) return;
     const bool is_little = start[0] == 'I';
     const bool is_big = HeaderFile::parse(start, 2, 2, is_little) == 43;
     const unsigned word = is_big ? 8 : 4;
-    const std::uint64_t directory =
+    std::uint64_t directory =
         is_big ? file.number(8, is_little) : HeaderFile::parse(start, 4, 4, is_little);
-    if (!file.seek(directory)) return;
-    const std::uint64_t count =
-        std::min<std::uint64_t>(file.number(is_big ? 8 : 2, is_little), 4096);
-    const std::string entries = file.bytes(count * (4 + 2 * word));
+    std::uint64_t count = 0;
+    std::string entries;
+    for (int i = 0; i <= page; ++i) {
+        if (directory == 0 || !file.seek(directory)) return;
+        count = std::min<std::uint64_t>(file.number(is_big ? 8 : 2, is_little), 4096);
+        entries = file.bytes(count * (4 + 2 * word));
+        directory = file.number(word, is_little);
+    }
     std::vector<double> white;
     std::vector<double> primaries;
     bool has_transfer = false;
@@ -463,6 +473,22 @@ void read_rla(HeaderFile& file, ImageSpec& spec) {
     if (!is_usual) set_primaries(spec, file_tag::kPrimaries, xy);
 }
 
+/// P. Debevec's PFM: the number after width and height is a factor, whose sign is the byte order.
+void read_pfm(HeaderFile& file, ImageSpec& spec) {
+    const std::string magic = file.line();
+    if (magic != "PF" && magic != "Pf") return;
+    std::vector<double> numbers;
+    while (numbers.size() < 3 && file.ok()) {
+        const std::vector<double> more = numbers_of(file.line());
+        numbers.insert(numbers.end(), more.begin(), more.end());
+    }
+    if (numbers.size() != 3 || std::fabs(numbers[2]) == 1) return;
+    add_ignored(spec,
+                fmt::format("scale factor: samples are multiplied by {}, as OpenImageIO does; "
+                            "other programs divide by it, or ignore it",
+                            shortest(std::fabs(numbers[2]))));
+}
+
 /// SMPTE ST 268:2003, table 1.
 void read_dpx(ImageSpec& spec) {
     const std::string transfer = spec.get_string_attribute("dpx:Transfer");
@@ -529,6 +555,30 @@ void read_psd(HeaderFile& file, ImageSpec& spec) {
         spec.attribute(file_tag::kImpossible, "mode is 9 (Lab); expected RGB or gray");
 }
 
+/// The profile that newer OpenImageIO versions store. "OpenEXR File Layout": each part's header is
+/// attributes (name, type, size, value) up to an empty name.
+void read_openexr_profile(HeaderFile& file, int part, ImageSpec& spec) {
+    (void)file.bytes(8);
+    for (int i = 0; i < kMostBlocks && part >= 0; ++i) {
+        const std::string name = file.name();
+        if (!file.ok()) return;
+        if (name.empty()) {
+            --part;
+            continue;
+        }
+        const std::string type = file.name();
+        const std::uint64_t size = file.number(4, true);
+        const std::uint64_t next = file.position() + size;
+        if (part == 0 && name == "ICCProfile" && type == "bytes" && size > 4) {
+            // The text of a hint comes first.
+            const std::uint64_t hint = file.number(4, true);
+            if (hint < size - 4 && file.seek(file.position() + hint))
+                set_bytes(spec, "ICCProfile", file.bytes(size - 4 - hint));
+        }
+        if (!file.ok() || !file.seek(next)) return;
+    }
+}
+
 /// Tags of OpenEXR that describe another rendering than the pixels.
 void read_openexr(ImageSpec& spec) {
     for (const char* name : {"renderingTransform", "lookModTransform"}) {
@@ -585,7 +635,8 @@ std::vector<std::string> ignored_of(const ImageSpec& spec) {
     return lines;
 }
 
-void complete_header(const std::string& path, std::string_view format, ImageSpec& spec) {
+void complete_header(const std::string& path, std::string_view format, int subimage,
+                     ImageSpec& spec) {
     spec.attribute(file_tag::kFormat, std::string(format));
     spec.attribute(file_tag::kColorSpace, spec.get_string_attribute("oiio:ColorSpace"));
     HeaderFile file(path);
@@ -600,9 +651,11 @@ void complete_header(const std::string& path, std::string_view format, ImageSpec
     if (format == "jpeg") read_jpeg(file, spec);
     if (format == "rla") read_rla(file, spec);
     if (format == "psd") read_psd(file, spec);
+    if (format == "pnm") read_pfm(file, spec);
+    if (format == "openexr") read_openexr_profile(file, subimage, spec);
     if (format == "tiff") {
         check_photometric(spec);
-        read_tiff(file, spec);
+        read_tiff(file, subimage, spec);
     }
 }
 

@@ -42,10 +42,11 @@ inline constexpr const char* kSubimage = "tonewright:file:subimage";
 /// full range.
 inline constexpr const char* kCicpTag = "CICP";
 
-/// Adds the facts of the file's header to the spec of its first subimage. Damaged headers add
-/// nothing: the reader of the pixels reports them.
-/// @param format  OIIO's name
-TONEWRIGHT_API void complete_header(const std::string& path, std::string_view format,
+/// Adds the facts of the file's header to the spec of a subimage. Damaged headers add nothing: the
+/// reader of the pixels reports them.
+/// @param format    OIIO's name
+/// @param subimage  only parts of OpenEXR and pages of TIFF have headers of their own
+TONEWRIGHT_API void complete_header(const std::string& path, std::string_view format, int subimage,
                                     OIIO::ImageSpec& spec);
 
 /// Adds a line to kIgnored.

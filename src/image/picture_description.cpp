@@ -265,21 +265,29 @@ Finding by_oiio_name(const ImageSpec& spec) {
     return Found{std::move(color), "oiio:ColorSpace"};
 }
 
-/// DPX: SMPTE ST 268:2003, table 5A.
+/// OpenImageIO's names of the video of SMPTE ST 268:2003, table 5A, with ITU-T H.273's primaries:
+/// 1 of HDTV, 5 of 625 lines, 6 of 525 lines.
+struct DpxVideo {
+    const char* name;
+    int primaries;
+};
+constexpr std::array kDpxVideo = {
+    DpxVideo{"Unspecified video", 1},    DpxVideo{"SMPTE 274M", 1},
+    DpxVideo{"ITU-R 709-4", 1},          DpxVideo{"ITU-R 601-5 system B or G", 5},
+    DpxVideo{"ITU-R 601-5 system M", 6}, DpxVideo{"NTSC composite video", 6},
+    DpxVideo{"PAL composite video", 5},
+};
+
 Finding by_dpx_transfer(const ImageSpec& spec) {
     const std::string transfer = spec.get_string_attribute("dpx:Transfer");
-    const auto is = [&](std::initializer_list<const char*> names) {
-        return std::any_of(names.begin(), names.end(), [&](const char* name) {
-            return OIIO::Strutil::iequals(transfer, name);
-        });
-    };
     const std::string rule = "dpx:Transfer " + transfer;
-    if (is({"Printing density", "Logarithmic"})) return Found{find_source_color("Cineon"), rule};
-    if (is({"Linear"})) return Found{find_source_color("lin_rec709"), rule};
-    if (is({"ITU-R 709-4", "ITU-R 601-5 system B or G", "ITU-R 601-5 system M", "SMPTE 274M",
-            "Unspecified video", "Composite video (NTSC)", "Composite video (PAL)"})) {
-        std::optional<SourceColor> color = color_of_code_points(1, 1);
-        if (color) return Found{std::move(*color), rule};
+    if (transfer == "Printing density" || transfer == "Logarithmic")
+        return Found{find_source_color("Cineon"), rule};
+    if (transfer == "Linear") return Found{find_source_color("lin_rec709"), rule};
+    for (const DpxVideo& video : kDpxVideo) {
+        if (transfer != video.name) continue;
+        if (auto color = color_of_code_points(video.primaries, 1))
+            return Found{std::move(*color), rule};
     }
     // A power that the file states.
     const std::string name = spec.get_string_attribute("oiio:ColorSpace");

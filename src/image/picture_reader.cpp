@@ -243,7 +243,7 @@ PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOp
     if (spec_.deep)
         cannot_read(path, "the picture is deep; expected flat pixels (oiiotool --flatten)");
     const std::string_view format = in_->format_name();
-    complete_header(path, format, spec_);
+    complete_header(path, format, subimage_, spec_);
     const std::string extension = extension_of(path);
     if (!extension.empty()) spec_.attribute(file_tag::kExtension, extension.substr(1));
     spec_.channelformats.clear();  // all channels are read in the widest of them

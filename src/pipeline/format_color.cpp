@@ -13,46 +13,19 @@ constexpr std::string_view kTexture = "sRGB - Texture";
 constexpr std::string_view kVideo = "Gamma 2.4 Rec.709 - Texture";
 constexpr std::string_view kFilm = "Cineon";
 
-FormatColor linear_format(std::string_view format, std::string_view title,
-                          std::vector<std::string_view> extensions) {
+FormatColor row(FormatMeaning meaning, std::string_view format, std::string_view title,
+                std::vector<std::string_view> extensions) {
+    // Of integers. Float files rarely hold code values, and film in floats is linear.
+    const std::string_view integers = meaning == FormatMeaning::linear        ? kLinear
+                                      : meaning == FormatMeaning::code_values ? kTexture
+                                      : meaning == FormatMeaning::film        ? kFilm
+                                                                              : kVideo;
     return {.format = format,
             .title = title,
             .extensions = std::move(extensions),
-            .meaning = FormatMeaning::linear,
-            .integer_space = kLinear,
-            .float_space = kLinear};
-}
-
-/// Float files rarely hold code values.
-FormatColor code_format(std::string_view format, std::string_view title,
-                        std::vector<std::string_view> extensions) {
-    return {.format = format,
-            .title = title,
-            .extensions = std::move(extensions),
-            .meaning = FormatMeaning::code_values,
-            .integer_space = kTexture,
-            .float_space = kLinear};
-}
-
-/// Files of film scanners and log recorders; other DPX files state their space in the name or in
-/// the header.
-FormatColor film_format(std::string_view format, std::string_view title,
-                        std::vector<std::string_view> extensions) {
-    return {.format = format,
-            .title = title,
-            .extensions = std::move(extensions),
-            .meaning = FormatMeaning::film,
-            .integer_space = kFilm,
-            .float_space = kLinear};
-}
-
-FormatColor video_format(std::vector<std::string_view> extensions) {
-    return {.format = "FFmpeg movie",
-            .title = "video",
-            .extensions = std::move(extensions),
-            .meaning = FormatMeaning::video,
-            .integer_space = kVideo,
-            .float_space = kVideo};
+            .meaning = meaning,
+            .integer_space = integers,
+            .float_space = meaning == FormatMeaning::video ? kVideo : kLinear};
 }
 
 FormatColor with_rule(FormatColor row) {
@@ -79,49 +52,50 @@ FormatColor stating_color(FormatColor row) {
 }  // namespace
 
 const std::vector<FormatColor>& all_format_colors() {
+    using enum FormatMeaning;
     static const std::vector<FormatColor> formats = {
-        with_rule(stating_color(linear_format("openexr", "OpenEXR", {"exr"}))),
-        with_rule(linear_format("hdr", "Radiance HDR", {"hdr"})),
+        with_rule(stating_color(row(linear, "openexr", "OpenEXR", {"exr"}))),
+        with_rule(row(linear, "hdr", "Radiance HDR", {"hdr"})),
         // OpenImageIO's format of PFM is PNM.
-        with_rule(linear_format("pnm", "PFM", {"pfm"})),
-        with_rule(with_icc(with_power(code_format("png", "PNG", {"png"})))),
-        with_rule(with_icc(code_format("jpeg", "JPEG", {"jpg", "jpeg"}))),
-        with_rule(with_icc(code_format("tiff", "TIFF", {"tif", "tiff"}))),
-        with_rule(with_power(code_format("targa", "Targa", {"tga"}))),
-        with_rule(code_format("bmp", "BMP", {"bmp"})),
-        with_rule(code_format("gif", "GIF", {"gif"})),
-        with_rule(code_format("webp", "WebP", {"webp"})),
-        with_rule(code_format("psd", "Photoshop", {"psd"})),
-        with_rule(code_format("heif", "HEIF", {"heic", "heif"})),
-        with_rule(code_format("jpegxl", "JPEG XL", {"jxl"})),
-        with_rule(code_format("heif", "AVIF", {"avif"})),
-        with_rule(code_format("jpeg2000", "JPEG 2000", {"jp2", "j2k"})),
-        with_rule(with_icc(code_format("tiff", "TIFF texture", {"tx"}))),
-        with_rule(with_power(film_format("dpx", "DPX", {"dpx"}))),
-        with_rule(film_format("cineon", "Cineon", {"cin"})),
-        with_rule(video_format({"mov", "mp4", "mxf", "mkv", "avi"})),
+        with_rule(row(linear, "pnm", "PFM", {"pfm"})),
+        with_rule(with_icc(with_power(row(code_values, "png", "PNG", {"png"})))),
+        with_rule(with_icc(row(code_values, "jpeg", "JPEG", {"jpg", "jpeg"}))),
+        with_rule(with_icc(row(code_values, "tiff", "TIFF", {"tif", "tiff"}))),
+        with_rule(with_power(row(code_values, "targa", "Targa", {"tga"}))),
+        with_rule(row(code_values, "bmp", "BMP", {"bmp"})),
+        with_rule(row(code_values, "gif", "GIF", {"gif"})),
+        with_rule(row(code_values, "webp", "WebP", {"webp"})),
+        with_rule(row(code_values, "psd", "Photoshop", {"psd"})),
+        with_rule(row(code_values, "heif", "HEIF", {"heic", "heif"})),
+        with_rule(row(code_values, "jpegxl", "JPEG XL", {"jxl"})),
+        with_rule(row(code_values, "heif", "AVIF", {"avif"})),
+        with_rule(row(code_values, "jpeg2000", "JPEG 2000", {"jp2", "j2k"})),
+        with_rule(with_icc(row(code_values, "tiff", "TIFF texture", {"tx"}))),
+        with_rule(with_power(row(film, "dpx", "DPX", {"dpx"}))),
+        with_rule(row(film, "cineon", "Cineon", {"cin"})),
+        with_rule(row(video, "FFmpeg movie", "video", {"mov", "mp4", "mxf", "mkv", "avi"})),
         // Extensions without a file rule; the others of OpenImageIO's formats.
-        stating_color(linear_format("openexr", "OpenEXR", {"sxr", "mxr"})),
-        linear_format("hdr", "Radiance HDR", {"rgbe"}),
-        with_rule(code_format("pnm", "PNM", {"ppm", "pgm", "pbm", "pnm"})),
-        with_icc(code_format("jpeg", "JPEG", {"jpe", "jif", "jfif", "jfi"})),
-        with_icc(code_format("tiff", "TIFF", {"env", "sm", "vsm"})),
-        with_power(code_format("targa", "Targa", {"tpic"})),
-        code_format("bmp", "BMP", {"dib"}),
-        code_format("psd", "Photoshop", {"pdd", "psb"}),
-        code_format("heif", "HEIF", {"heics"}),
-        code_format("jpeg2000", "JPEG 2000", {"j2c"}),
-        video_format({"qt", "m4v", "3gp", "3g2", "mj2", "mpg"}),
-        with_rule(code_format("ico", "ICO", {"ico"})),
-        with_rule(code_format("iff", "IFF", {"iff"})),
-        code_format("iff", "IFF", {"z"}),
-        with_rule(code_format("sgi", "SGI", {"sgi"})),
-        code_format("sgi", "SGI", {"rgb", "rgba", "bw", "int", "inta"}),
-        with_rule(with_power(code_format("rla", "RLA", {"rla"}))),
-        code_format("dds", "DDS", {"dds"}),
-        code_format("softimage", "Softimage", {"pic"}),
-        linear_format("zfile", "Zfile", {"zfile"}),
-        linear_format("fits", "FITS", {"fits"}),
+        stating_color(row(linear, "openexr", "OpenEXR", {"sxr", "mxr"})),
+        row(linear, "hdr", "Radiance HDR", {"rgbe"}),
+        with_rule(row(code_values, "pnm", "PNM", {"ppm", "pgm", "pbm", "pnm"})),
+        with_icc(row(code_values, "jpeg", "JPEG", {"jpe", "jif", "jfif", "jfi"})),
+        with_icc(row(code_values, "tiff", "TIFF", {"env", "sm", "vsm"})),
+        with_power(row(code_values, "targa", "Targa", {"tpic"})),
+        row(code_values, "bmp", "BMP", {"dib"}),
+        row(code_values, "psd", "Photoshop", {"pdd", "psb"}),
+        row(code_values, "heif", "HEIF", {"heics"}),
+        row(code_values, "jpeg2000", "JPEG 2000", {"j2c"}),
+        row(video, "FFmpeg movie", "video", {"qt", "m4v", "3gp", "3g2", "mj2", "mpg"}),
+        with_rule(row(code_values, "ico", "ICO", {"ico"})),
+        with_rule(row(code_values, "iff", "IFF", {"iff"})),
+        row(code_values, "iff", "IFF", {"z"}),
+        with_rule(row(code_values, "sgi", "SGI", {"sgi"})),
+        row(code_values, "sgi", "SGI", {"rgb", "rgba", "bw", "int", "inta"}),
+        with_rule(with_power(row(code_values, "rla", "RLA", {"rla"}))),
+        row(code_values, "dds", "DDS", {"dds"}),
+        row(code_values, "softimage", "Softimage", {"pic"}),
+        row(linear, "zfile", "Zfile", {"zfile"}),
+        row(linear, "fits", "FITS", {"fits"}),
     };
     return formats;
 }

@@ -239,7 +239,7 @@ class TonemappedInput final : public ImageInput {
             check_pixel_type("picture", source.format);
             source.channelformats.clear();  // all channels are read in the widest of them
             complete_channel_names(source);
-            complete_header(path_, picture_->format_name(), source);
+            complete_header(path_, picture_->format_name(), subimage, source);
             std::vector<int> order;
             const std::vector<Layer> layers = color_layers(source);
             const bool has_layers = std::string_view(picture_->format_name()) == "openexr";

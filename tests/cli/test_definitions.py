@@ -20,7 +20,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, evaluate, run  # noqa: E402
+from pictures import Report, evaluate, read_rgb, run  # noqa: E402
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "docs" / "examples"
 SOFT, WITH_E = EXAMPLES / "reinhard_055.tone", EXAMPLES / "reinhard_e.tone"
@@ -53,10 +53,6 @@ def write_picture(path, pixels):
     out.close()
 
 
-def read_picture(path):
-    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
-
-
 def check_examples(report, command, scratch, python, plugin):
     # eval prints nine digits.
     report.compare("eval: issue 2320", evaluate(command, GRAYS, SOFT, "--display", "linear"), soft(GRAYS), 1e-9)
@@ -80,7 +76,7 @@ def check_examples(report, command, scratch, python, plugin):
     write_picture(scene, np.tile(GRAYS[None], (4, 1, 1)))
     run(command, "apply", scene, scratch / "out.png", "--operator", f"{SOFT}:k=0.4")
     # Half a code value of 8 bits, and dither of as much.
-    report.compare("apply: PNG", read_picture(scratch / "out.png")[1], srgb(soft(GRAYS, 0.4)), 1.01 / 255)
+    report.compare("apply: PNG", read_rgb(scratch / "out.png", scratch)[1], srgb(soft(GRAYS, 0.4)), 1.01 / 255)
     text = run("oiiotool", "--info", "-v", scratch / "out.png")
     report.check("apply: the picture names the file", "reinhard_055.tone" in text and "k=0.4" in text, text)
 
@@ -126,7 +122,7 @@ def check_examples(report, command, scratch, python, plugin):
         done = subprocess.run(["oiiotool", "scene.exr.tonewright?op=soft.tone:k=0.4&display=linear", "-o", "plugin.exr"],
                               cwd=scratch, env=env, capture_output=True, text=True, check=False)
         if report.check("plugin: op=soft.tone", done.returncode == 0, done.stdout + done.stderr):
-            report.compare("plugin: colors", read_picture(scratch / "plugin.exr")[1], soft(GRAYS, 0.4), 2e-6)
+            report.compare("plugin: colors", read_rgb(scratch / "plugin.exr", scratch)[1], soft(GRAYS, 0.4), 2e-6)
 
 
 def check_ffmpeg(report, command, scratch):
@@ -143,7 +139,7 @@ def check_ffmpeg(report, command, scratch):
     # Independent of our own reading: oiiotool's OpenColorIO applies the same file.
     run("oiiotool", "--colorconfig", "config/config.ocio", "codes.exr", "--ociofiletransform", scratch / "f.cube", "-o", "ocio.exr", folder=scratch)
     # Both interpolate in tetrahedra or along lines, in single precision.
-    report.compare("ffmpeg: the LUT", read_picture(scratch / "graded.exr"), read_picture(scratch / "ocio.exr"), 2e-5)
+    report.compare("ffmpeg: the LUT", read_rgb(scratch / "graded.exr", scratch), read_rgb(scratch / "ocio.exr", scratch), 2e-5)
     report.check("ffmpeg: the LUT's header names the operator", "reinhard_055" in header, header[:400])
 
 
@@ -153,7 +149,7 @@ def check_config(report, command, scratch, scene):
     run("oiiotool", "--colorconfig", config, scene, "--ociodisplay:from=lin_rec709", "sRGB", "Reinhard 0.55", "-o",
         scratch / "ocio.exr")
     # One half-domain table: 3e-7 of the encoded value; float32 of the picture itself beside it.
-    report.compare("config: the view through oiiotool", read_picture(scratch / "ocio.exr")[1], srgb(soft(GRAYS)), 1e-6)
+    report.compare("config: the view through oiiotool", read_rgb(scratch / "ocio.exr", scratch)[1], srgb(soft(GRAYS)), 1e-6)
     done = subprocess.run([command, "config", "-o", scratch / "c2", "--views", "agx_minimal", scratch / "clash.tone"],
                           capture_output=True, text=True, check=False)
     report.check("config: a file that is not there is exit 3", done.returncode == 3, done.stderr)

@@ -22,7 +22,7 @@ import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import ALL, Report, acescct_encode, evaluate, run  # noqa: E402
+from pictures import ALL, Report, acescct_encode, evaluate, read_rgb, run  # noqa: E402
 
 # Linear Rec.709 to ACEScg, by the published conversion of both to XYZ with Bradford's adaptation (SMPTE RP 177, S-2014-004).
 TO_AP1 = np.array([[0.613097402, 0.339523146, 0.047379451], [0.070193722, 0.916353879, 0.013452399],
@@ -106,10 +106,6 @@ def write_picture(path, pixels, kind="float"):
     out.open(str(path), oiio.ImageSpec(width, height, channels, kind))
     out.write_image(np.ascontiguousarray(pixels, dtype=np.float32))
     out.close()
-
-
-def read_picture(path):
-    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
 
 
 def check_formats(report, command, scratch):
@@ -215,9 +211,9 @@ def check_forms(report, command, scratch):
     write_picture(scene, COLORS[None])
     # Half a code value of 8 bits, and dither of as much.
     run(command, "apply", scene, scratch / "out.png", "--operator", text)
-    report.compare("apply: PNG", read_picture(scratch / "out.png")[0], wanted, 1.01 / 255)
+    report.compare("apply: PNG", read_rgb(scratch / "out.png", scratch)[0], wanted, 1.01 / 255)
     run(command, "apply", scene, scratch / "lut.exr", "--lut", scratch / "film.cube", "--input-encoding", "acescct")
-    report.compare("apply --lut", read_picture(scratch / "lut.exr")[0], wanted, 1e-5)
+    report.compare("apply --lut", read_rgb(scratch / "lut.exr", scratch)[0], wanted, 1e-5)
     run(command, "plot", text, "-o", scratch / "plot.svg")
     report.check("plot", "Film Print" in (scratch / "plot.svg").read_text())
     run(command, "compare", scene, text, "hable", "-o", scratch / "sheet.png")
@@ -243,7 +239,7 @@ def check_forms(report, command, scratch):
     run("oiiotool", "--colorconfig", config / "config.ocio", scene, "--ociodisplay:from=lin_rec709", "sRGB", "Film", "-o",
         scratch / "ocio.exr")
     # The half-LUTs of shaper and encodings: 3e-7 each, after a LUT whose slope is about 1.5.
-    report.compare("config: the view through oiiotool", read_picture(scratch / "ocio.exr")[0], wanted, 2e-6)
+    report.compare("config: the view through oiiotool", read_rgb(scratch / "ocio.exr", scratch)[0], wanted, 2e-6)
 
     # Every instruction set, OpenColorIO's CPU and GPU, llvmpipe's GLSL: verify holds each to its bound.
     done = subprocess.run([command, "verify", text, scratch / "one.cube", "--json", *([] if ALL else ["--quick"])],
@@ -334,7 +330,7 @@ def check_plugin(report, plugin, command, scratch):
     done = subprocess.run(["oiiotool", name, "-o", "plugin.exr"], cwd=scratch, env=env, capture_output=True, text=True, check=False)
     if report.check("plugin: op=film.cube", done.returncode == 0, done.stdout + done.stderr):
         wanted = evaluate(command, COLORS, f"{scratch / 'film.cube'}:input=acescct:output=srgb")
-        report.compare("plugin: colors", read_picture(scratch / "plugin.exr")[0], wanted, 2e-6)
+        report.compare("plugin: colors", read_rgb(scratch / "plugin.exr", scratch)[0], wanted, 2e-6)
 
 
 def main() -> int:

@@ -886,11 +886,10 @@ def dpx_rows():
         allow=(USED, IMPOSSIBLE, NAMED), word="log")
     add("linear.dpx", form, "transfer 2 (linear)", lambda: dpx(ten, transfer=2), f10, value=True)
     add("linear-16.dpx", form, "transfer 2 (linear), 16 bits", lambda: dpx(RGB16, 16, transfer=2), F16)
-    for number, name in ((5, "SMPTE 274M"), (6, "ITU-R 709"), (7, "ITU-R 601, 625 lines"), (8, "ITU-R 601, 525 lines")):
+    for number, name, space in ((4, "unspecified video", 1), (5, "SMPTE 274M", 1), (6, "ITU-R 709", 1), (7, "ITU-R 601, 625 lines", 5),
+                                (8, "ITU-R 601, 525 lines", 6), (9, "NTSC", 6), (10, "PAL", 5)):
         add(f"video-{number}.dpx", form, f"transfer {number} ({name})", lambda n=number: dpx(ten, transfer=n, colorimetric=n),
-            h273(f10, {5: 1, 6: 1, 7: 5, 8: 6}[number], 1),
-            others=(*h273_others(f10, {5: 1, 6: 1, 7: 5, 8: 6}[number], 1), (power(2.4)(f10), "BT.1886, primaries of BT.709"),
-                    (bt709_camera(f10), "inverse of the camera curve, primaries of BT.709")), value=number == 6)
+            h273(f10, space, 1), others=h273_others(f10, space, 1), value=number == 6)
     undefined = ((cineon_light(code), "the config's rule for .dpx: Cineon"), (srgb(f10), "sRGB"), (10 ** ((code - 685) * 0.002 / 0.6), "Cineon"))
     add("undefined.dpx", form, "transfer 255 (undefined)", lambda: dpx(ten, transfer=255, colorimetric=255), cineon_light(code), others=undefined)
     add("user.dpx", form, "transfer 0 (user defined)", lambda: dpx(ten, transfer=0), cineon_light(code), others=undefined)

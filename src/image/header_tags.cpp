@@ -151,16 +151,26 @@ void set_primaries(ImageSpec& spec, const char* name, const std::array<float, 8>
     spec.attribute(name, TypeDesc(TypeDesc::FLOAT, 8), xy.data());
 }
 
-/// W3C PNG (third edition), 11.3.2: everything that states color comes before the first IDAT.
+/// W3C PNG (third edition), 11.3.2: everything that states color comes before the first IDAT. The
+/// block of Exif comes after the pixels in files of older programs (PNG extensions 1.5.0).
 void read_png(HeaderFile& file, ImageSpec& spec) {
     (void)file.bytes(8);
     std::array<float, 8> white_first{};
     bool has_chroma = false;
+    bool is_after_pixels = false;
     for (int i = 0; i < kMostBlocks && file.ok(); ++i) {
         const std::uint64_t length = file.number(4, false);
         const std::string type = file.bytes(4);
         const std::uint64_t next = file.position() + length + 4;
-        if (type == "IDAT" || type == "IEND" || !file.ok()) break;
+        if (type == "IEND" || !file.ok()) break;
+        is_after_pixels = is_after_pixels || type == "IDAT";
+        constexpr std::array kColor = {"cICP", "iCCP", "sRGB", "gAMA", "cHRM"};
+        if (is_after_pixels && type != "eXIf") {
+            if (std::find(kColor.begin(), kColor.end(), type) != kColor.end())
+                add_ignored(spec, type + ": it comes after the pixels, where PNG has no colors");
+            if (!file.seek(next)) break;
+            continue;
+        }
         constexpr std::array kRead = {"cICP", "sRGB", "gAMA", "cHRM", "acTL", "eXIf"};
         std::string data;
         if (std::find(kRead.begin(), kRead.end(), type) != kRead.end()) data = file.bytes(length);
@@ -483,10 +493,10 @@ void read_pfm(HeaderFile& file, ImageSpec& spec) {
         numbers.insert(numbers.end(), more.begin(), more.end());
     }
     if (numbers.size() != 3 || std::fabs(numbers[2]) == 1) return;
-    add_ignored(spec,
-                fmt::format("scale factor: samples are multiplied by {}, as OpenImageIO does; "
-                            "other programs divide by it, or ignore it",
-                            shortest(std::fabs(numbers[2]))));
+    const std::string factor = shortest(std::fabs(numbers[2]));
+    add_ignored(spec, fmt::format("scale factor: samples are multiplied by {}, as in OpenImageIO, "
+                                  "not divided, as in ffmpeg",
+                                  factor));
 }
 
 /// SMPTE ST 268:2003, table 1.
@@ -592,11 +602,18 @@ void read_openexr(ImageSpec& spec) {
                                       "relative",
                                       shortest(static_cast<double>(white))));
     }
-    if (const auto* neutral = spec.find_attribute("adoptedNeutral", TypeDesc(TypeDesc::FLOAT, 2))) {
-        const auto* xy = static_cast<const float*>(neutral->data());
+    std::array<float, 2> neutral{};
+    // OpenEXR, ImfStandardAttributes.h: the white of files without chromaticities is D65.
+    std::array<float, 8> ends = {0, 0, 0, 0, 0, 0, 0.3127F, 0.3290F};
+    if (!spec.getattribute("adoptedNeutral", TypeDesc(TypeDesc::FLOAT, TypeDesc::VEC2),
+                           neutral.data()))
+        return;
+    (void)spec.getattribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), ends.data());
+    constexpr float kSame = 1e-3F;  // of programs that round to three digits
+    if (std::fabs(neutral[0] - ends[6]) > kSame || std::fabs(neutral[1] - ends[7]) > kSame) {
         add_ignored(spec, fmt::format("adoptedNeutral: colors are not adapted to the white {}, {}",
-                                      shortest(static_cast<double>(xy[0])),
-                                      shortest(static_cast<double>(xy[1]))));
+                                      shortest(static_cast<double>(neutral[0])),
+                                      shortest(static_cast<double>(neutral[1]))));
     }
 }
 

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "base/strings.h"
+#include "image/report_thrown.h"
 #include "tonewright/error.h"
 
 // OpenImageIO/tiffutils.h declares these. It includes a header of libtiff, which Debian's package
@@ -401,18 +402,11 @@ class HeifInput final : public OIIO::ImageInput {
     template <class Step>
     bool guarded(const Step& step) noexcept {
         try {
-            try {
-                step();
-                return true;
-            } catch (const std::bad_alloc&) {
-                errorfmt("not enough memory");
-            } catch (const std::exception& e) {
-                errorfmt("{}", one_line(e.what()));
-            }
-        } catch (const std::exception&) {
-            return false;  // no memory for the message
+            step();
+            return true;
+        } catch (...) {
+            return report_thrown(*this, "");
         }
-        return false;
     }
 
     void open_file(const std::string& path) {

@@ -35,8 +35,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// No limit, for a picture of our own.
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-/// Hold it while OpenImageIO reads the header of a file or of a subimage. Its version 2.4 decodes ICC
-/// profiles with tables that it changes without a lock of its own, so two threads that open
+/// Hold it while OpenImageIO reads the header of a file or of a subimage. Its version 2.4 decodes
+/// ICC profiles with tables that it changes without a lock of its own, so two threads that open
 /// pictures at once would crash. OpenEXR has no profiles: its files open at the same time.
 [[nodiscard]] TONEWRIGHT_API std::unique_lock<std::recursive_mutex> lock_header(
     const std::string& path);

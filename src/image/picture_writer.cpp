@@ -71,6 +71,11 @@ const FormatCompressions* compressions_of(std::string_view format) {
     return found == all.end() ? nullptr : &*found;
 }
 
+/// A share of 0 to 1 as percent, rounded up, so that a single pixel is not 0 %.
+std::string percent_text(double share) {
+    return fmt::format("{:.3g}", std::ceil(1000 * share) / 10);
+}
+
 /// Of the blocks that a compression of OpenEXR makes of rows (ImfCompressor.cpp); 0 for other
 /// names.
 int rows_of_block(std::string_view compression) {
@@ -656,9 +661,9 @@ std::string PictureWriter::cut_off(const ImageSpec& picture) const {
             format());
     }
     return fmt::format(
-        "{:.2g} % of the data window lies outside the display window and is left "
-        "out; {} has no data window",
-        100 * lost, format());
+        "{} % of the data window lies outside the display window and is left out; {} has no data "
+        "window",
+        percent_text(lost), format());
 }
 
 void PictureWriter::watch_cover(const ImageBuf& rows) {
@@ -693,12 +698,11 @@ void PictureWriter::warn_of_cover() const {
             "alpha is 0 everywhere, so viewers show nothing; --alpha ignore leaves it out, --alpha "
             "opaque makes it 1");
     } else if (becomes_straight_ && lost_count_ > 0) {
-        const double percent = 100 * lost_count_ / std::max(pixel_count_, 1.0);
-        options_.warn(fmt::format(
-            "{} % of the pixels have more light than their alpha carries (flames, "
-            "glass), and {} cannot hold it; --alpha opaque or ignore keeps it, as "
-            "does EXR",
-            percent < 0.1 ? "less than 0.1" : fmt::format("{:.2g}", percent), format()));
+        options_.warn(
+            fmt::format("{} % of the pixels have more light than their alpha carries (flames, "
+                        "glass), and {} cannot hold it; --alpha opaque or ignore keeps it, as "
+                        "does EXR",
+                        percent_text(lost_count_ / std::max(pixel_count_, 1.0)), format()));
     }
 }
 

@@ -20,7 +20,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +29,7 @@
 #include "base/strings.h"
 #include "image/color_tags.h"
 #include "image/picture_description.h"
+#include "image/report_thrown.h"
 #include "image/scene_planes.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
@@ -59,26 +59,6 @@ struct ChannelPlan {
 };
 
 [[noreturn]] void fail(const std::string& message) { throw Error(message); }
-
-/// Sets the message of the current exception as the picture's error; functions of callers may throw
-/// anything. Without memory for a message, the error is empty.
-/// @returns  false
-bool report_thrown(ImageBuf& dst, const char* prefix = "tonemap: ") noexcept {
-    try {
-        try {
-            throw;
-        } catch (const std::bad_alloc&) {
-            dst.errorfmt("not enough memory");
-        } catch (const std::exception& e) {
-            dst.errorfmt("{}{}", prefix, e.what());
-        } catch (...) {
-            dst.errorfmt("{}unknown error", prefix);
-        }
-    } catch (const std::exception&) {
-        return false;
-    }
-    return false;
-}
 
 /// The spec of a destination that does not exist yet.
 ImageSpec result_spec(const ImageSpec& source, bool gray_becomes_color) {
@@ -764,7 +744,7 @@ bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
         state_->run(dst, src, roi, nthreads, told);
         return true;
     } catch (...) {
-        return report_thrown(dst);
+        return report_thrown(dst, "tonemap: ");
     }
 }
 
@@ -774,7 +754,7 @@ bool tonemap(ImageBuf& dst, const ImageBuf& src, const TonemapOptions& options, 
     try {
         tonemapper.emplace(options);
     } catch (...) {
-        return report_thrown(dst);
+        return report_thrown(dst, "tonemap: ");
     }
     return (*tonemapper)(dst, src, roi, nthreads, progress, progress_data);
 }

@@ -14,7 +14,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,6 +25,7 @@
 #include "image/layers.h"
 #include "image/lut_picture.h"
 #include "image/picture_file.h"
+#include "image/report_thrown.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
 #include "image/tonemap_arguments.h"
@@ -188,20 +188,11 @@ class TonemappedInput final : public ImageInput {
     template <class Step>
     bool guarded(const Step& step) noexcept {
         try {
-            try {
-                step();
-                return true;
-            } catch (const std::bad_alloc&) {
-                errorfmt("tonewright: {}: not enough memory", one_line(path_));
-            } catch (const std::exception& e) {
-                errorfmt("tonewright: {}", one_line(e.what()));
-            } catch (...) {
-                errorfmt("tonewright: unknown error");
-            }
-        } catch (const std::exception&) {
-            return false;  // no memory for the message
+            step();
+            return true;
+        } catch (...) {
+            return report_thrown(*this, "tonewright: ");
         }
-        return false;
     }
 
     /// Throws the error of the picture's own reader.

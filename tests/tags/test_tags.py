@@ -45,13 +45,14 @@ def read_exr(path):
     return pixels, names, origin
 
 
-def light_at(picture, x, y):
-    """Color and alpha of a pixel: the operator is undone, and so is the alpha."""
+def light_at(picture, layer, x, y):
+    """Color and alpha of a pixel of a layer: the operator is undone, and so is the alpha."""
     pixels, names, _origin = picture
     y, x = min(y, pixels.shape[0] - 1), min(x, pixels.shape[1] - 1)
     values = dict(zip(names, pixels[y, x]))
-    alpha = values.get("A")
-    color = np.array([values[n] for n in "RGB"]) if "R" in values else np.array([pixels[y, x][0]] * 3)
+    prefix = f"{layer}." if layer and f"{layer}.R" in values else ""
+    alpha = values.get(prefix + "A")
+    color = np.array([values[prefix + n] for n in "RGB"]) if prefix + "R" in values else np.array([pixels[y, x][0]] * 3)
     if alpha is not None and alpha > 0:
         color = color / alpha
     with np.errstate(divide="ignore"):
@@ -94,11 +95,13 @@ class Trial:
     def run(*command):
         return subprocess.run([str(word) for word in command], capture_output=True, text=True, errors="replace", timeout=120, check=False)
 
-    def said(self):
-        return self.applied.stderr + "\n" + "\n".join(json.dumps(line) for line in self.info.get("ignored") or [])
+    def lines(self):
+        """What was said about the header, without what was said about the output."""
+        return [*self.applied.stderr.splitlines(), *(json.dumps(line) for line in self.info.get("ignored") or [])]
 
     def names_it(self):
-        return any(word.lower() in self.said().lower() for word in self.row.word.split("|")) if self.row.word else False
+        said = "\n".join(self.lines()).lower()
+        return any(word.lower() in said for word in self.row.word.split("|"))
 
     def light_fault(self, rgb):
         """Empty where every point has its value."""
@@ -108,7 +111,7 @@ class Trial:
         if row.size and (width, height) != row.size:
             return f"{width} x {height} pixels; expected {row.size[0]} x {row.size[1]}"
         for (x, y), want in points:
-            got, alpha = light_at(self.picture, x, y)
+            got, alpha = light_at(self.picture, self.info.get("layer"), x, y)
             if not near(got, want, row.tolerance):
                 return f"{text(got)} at {x} {y}; expected {text(want)}"
             if row.alpha is not None and (alpha is None or abs(alpha - row.alpha) > 0.002):
@@ -116,34 +119,23 @@ class Trial:
         return ""
 
     def judge(self):
-        """The treatment, and a fault."""
+        """What is wrong; empty if the row's treatment is what happens."""
         row, code = self.row, self.applied.returncode
         if code == REFUSED:
-            if IMPOSSIBLE in row.allow and self.names_it():
-                return IMPOSSIBLE, ""
-            wanted = f"with one of these words: {row.word}" if IMPOSSIBLE in row.allow else "expected a picture"
-            return IMPOSSIBLE, f"refused, {wanted}: {self.applied.stderr.strip()[:200]}"
+            if row.treatment != IMPOSSIBLE:
+                return f"refused; expected {row.treatment}: {self.applied.stderr.strip()[:200]}"
+            return "" if self.names_it() else f"refused without one of the words {row.word}: {self.applied.stderr.strip()[:200]}"
         if code != 0:
-            return "", f"exit status {code}: {self.applied.stderr.strip()[:200]}"
-        if NAMED in row.allow and self.names_it() and not (USED in row.allow and self.has_light() and not self.light_fault(row.rgb)):
-            # The value without the tag is the reader's own; only rows that say nothing else check it.
-            plain = self.light_fault(row.rgb) if self.has_light() and USED not in row.allow and NO_EFFECT not in row.allow else ""
-            return NAMED, plain
-        if not self.has_light():
-            return "", f"read without a word; expected {' or '.join(row.allow)} ({row.word})"
-        faults = [self.light_fault(rgb) for rgb in [row.rgb, *(rgb for rgb, _why in row.others)]]
-        if all(faults):
-            named = f", and no line has {row.word}" if NAMED in row.allow else ""
-            return "", faults[0] + named
-        if NAMED in row.allow and USED not in row.allow and NO_EFFECT not in row.allow:
-            return "", f"read without a word; expected one of {row.word}"
-        seen = NO_EFFECT if NO_EFFECT in row.allow and USED not in row.allow else USED
-        if seen not in row.allow:
-            return "", f"read; expected {' or '.join(row.allow)} ({row.word})"
-        return seen, ""
-
-    def has_light(self):
-        return self.row.rgb is not None or bool(self.row.points)
+            return f"exit status {code}: {self.applied.stderr.strip()[:200]}"
+        if row.treatment == IMPOSSIBLE:
+            return "read; expected a refusal"
+        lines = self.lines()
+        if row.word and not self.names_it():
+            return f"no line has one of the words {row.word}: {lines}"
+        if not row.word and lines:
+            return f"{row.treatment}, but a line says: {lines}"
+        rgb = row.rgb if row.ignored is None else row.ignored
+        return self.light_fault(rgb) if rgb is not None or row.points else ""
 
     def info_of_row(self):
         for field, value in self.row.info.items():
@@ -159,8 +151,7 @@ def trial(program, row, folder):
         return row, "skipped", "", str(error)
     except subprocess.TimeoutExpired:
         return row, "", "no end after 120 seconds", ""
-    seen, fault = done.judge()
-    return row, seen, fault or done.info_of_row(), ""
+    return row, row.treatment, done.judge() or done.info_of_row(), ""
 
 
 def markdown(results):

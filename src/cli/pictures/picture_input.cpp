@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -41,14 +42,25 @@ bool is_same_file(const std::string& a, const std::string& b) {
 
 namespace {
 
-/// True for texts that differ in digits alone: the figures of a shot differ from frame to frame,
-/// and one line for all of them is enough.
-bool is_same_kind(const std::string& a, const std::string& b) {
-    const auto without_digits = [](std::string text) {
-        std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
-        return text;
-    };
-    return without_digits(a) == without_digits(b);
+bool is_of_number(char c) { return (c >= '0' && c <= '9') || c == '.'; }
+
+std::string without_numbers(std::string text) {
+    std::erase_if(text, is_of_number);
+    return text;
+}
+
+std::vector<double> numbers_of(const std::string& text) {
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (!is_of_number(text[i])) continue;
+        double number = 0;
+        const char* const begin = text.data() + i;
+        const char* const end =
+            std::from_chars(begin, text.data() + text.size(), number, std::chars_format::fixed).ptr;
+        numbers.push_back(number);
+        if (end > begin) i += static_cast<std::size_t>(end - begin) - 1;
+    }
+    return numbers;
 }
 
 }  // namespace
@@ -56,10 +68,15 @@ bool is_same_kind(const std::string& a, const std::string& b) {
 void Warnings::add(const std::string& text) {
     const std::string named = name_.empty() ? text : fmt::format("{}: {}", name_, text);
     if (message_options().is_strict) warn(named);  // throws
-    const bool is_known = std::any_of(texts_.begin(), texts_.end(), [&](const std::string& known) {
-        return name_.empty() ? known == named : is_same_kind(known, named);
+    // The figures of a shot differ from frame to frame, and one line for all of them is enough: the
+    // one of the worst frame, in whatever order the frames end.
+    const auto known = std::find_if(texts_.begin(), texts_.end(), [&](const std::string& other) {
+        return name_.empty() ? other == named : without_numbers(other) == without_numbers(named);
     });
-    if (!is_known) texts_.push_back(named);
+    if (known == texts_.end())
+        texts_.push_back(named);
+    else if (numbers_of(*known) < numbers_of(named))
+        *known = named;
 }
 
 void Warnings::print() {

@@ -473,7 +473,8 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
 void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
                        const std::string& type, const std::string& alpha, int nthreads,
                        const std::string& subimage, const std::string& layer, bool is_in_place,
-                       double max_pixels, const py::kwargs& arguments) {
+                       double max_pixels, const std::string& compression, int quality,
+                       const std::string& subsampling, bool verifies, const py::kwargs& arguments) {
     check_overwriting("tonemap_file", {{in, out}}, is_in_place);
     TonemapOptions options = parse_options(op, arguments);
     WriteOptions write;
@@ -485,6 +486,10 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
         options.unpremult = TonemapOptions::Unpremult::no;
     }
     if (!type.empty()) set_pixel_type(write, type);
+    write.compression = compression;
+    write.quality = quality;
+    write.subsampling = subsampling;
+    write.verifies = verifies;
     const py::gil_scoped_release release;
     write.says_how = true;
     write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
@@ -667,7 +672,9 @@ PYBIND11_MODULE(_tonewright, m) {
           py::arg("roi"), py::arg("nthreads"), py::arg("progress"));
     m.def("tonemap_file", &tw::tonemap_into_file, py::arg("source"), py::arg("target"),
           py::arg("op"), py::kw_only(), py::arg("type"), py::arg("alpha"), py::arg("nthreads"),
-          py::arg("subimage"), py::arg("layer"), py::arg("in_place"), py::arg("max_pixels"));
+          py::arg("subimage"), py::arg("layer"), py::arg("in_place"), py::arg("max_pixels"),
+          py::arg("compression"), py::arg("quality"), py::arg("subsampling"),
+          py::arg("verify_output"));
     m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"));
     m.def("meter", &tw::meter_any);
     m.def("info", &tw::describe_file, py::arg("image"), py::arg("input"), py::arg("subimage"),

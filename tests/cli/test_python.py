@@ -366,6 +366,13 @@ def check_pictures(report, tw, command, scratch):
     part = tw.tonemap(oiio.ImageBuf(str(path)), "hable", exposure=1, roi=oiio.ROI(3, 9, 5, 8, 0, 1, 0, 4))
     report.check("roi", np.array_equal(part.get_pixels("float"), applied[5:8, 3:9]))
     tw.tonemap_file(path, scratch / "c.exr", "hable", exposure=1, dtype="float")
+    written = {"compression": ("--compression", "zips"), "quality": ("--quality", 50), "subsampling": ("--subsampling", "4:4:4")}
+    for name, (option, value) in written.items():
+        ends = "exr" if name == "compression" else "jpg"
+        run(command, "apply", path, scratch / f"w.{ends}", "--operator", "hable", "--alpha", "ignore", option, str(value))
+        tw.tonemap_file(path, scratch / f"v.{ends}", "hable", alpha="ignore", verify_output=True, **{name: value})
+        report.check(f"tonemap_file({name}={value!r}): the bytes of `apply {option}`",
+                     (scratch / f"v.{ends}").read_bytes() == (scratch / f"w.{ends}").read_bytes())
     report.check("tonemap_file(): the bytes of `apply`", (scratch / "c.exr").read_bytes() == (scratch / "b.exr").read_bytes())
     original = path.read_bytes()
     (scratch / "symbolic.exr").symlink_to(path)

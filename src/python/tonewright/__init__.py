@@ -119,7 +119,8 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
                  input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
                  input_units: str = "relative", mix: float = 1, unpremult: str | bool = "auto", statistics: str = "picture",
                  dtype: str | None = None, alpha: str = "keep", subimage: int | str = "", layer: str = "",
-                 nthreads: int = 0, in_place: bool = False, max_pixels: float = 1e9) -> None:
+                 nthreads: int = 0, in_place: bool = False, max_pixels: float = 1e9, compression: str = "", quality: int = 0,
+                 subsampling: str = "", verify_output: bool = False) -> None:
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
@@ -130,6 +131,11 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     layer: layer of an EXR file (default: R, G, B, else the first that is a picture).
     in_place: allow the target to be the source, which is lost then.
     max_pixels: most pixels that the source may declare.
+    compression: a method of the format, with ":quality" if it has one, such as "zip" or "dwaa:45" (default: the source's if
+    the format has it, else the format's).
+    quality: of JPEG, WebP, HEIF and AVIF, [1, 100] (default 0: the format's).
+    subsampling: chroma of JPEG: "4:4:4", "4:2:2", "4:2:0" or "4:1:1" (default: 4:4:4 from quality 90 on, else 4:2:0).
+    verify_output: read the written file and compare all pixels, before it gets its name.
     Other options: as tonemap().
 
     Example: tonewright.tonemap_file("shot.exr", "shot.png", "hable", settings={"white": 8})
@@ -140,7 +146,9 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
                              type="" if dtype is None else _text("dtype", dtype), alpha=_text("alpha", alpha),
                              nthreads=_operator.index(nthreads), subimage=str(subimage), layer=_text("layer", layer),
-                             in_place=bool(in_place), max_pixels=_number("max_pixels", max_pixels), **options)
+                             in_place=bool(in_place), max_pixels=_number("max_pixels", max_pixels),
+                             compression=_text("compression", compression), quality=_operator.index(quality),
+                             subsampling=_text("subsampling", subsampling), verify_output=bool(verify_output), **options)
 
 
 def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,

@@ -83,7 +83,7 @@ def check_windows(report, command, folder):
     except ImportError as error:
         print(f"skipped: data windows ({error})")
         return
-    for at, share in ((100, "all"), (44, "44 %"), (42, "")):  # 8 x 8 pixels: of 6 x 6 in the window, 1 - 36/64 is lost
+    for at, share in ((100, "all"), (44, "43.8 %"), (42, "")):  # 8 x 8 pixels: of 6 x 6 in the window, 1 - 36/64 is lost
         spec = oiio.ImageSpec(8, 8, 3, oiio.HALF)
         spec.x = spec.y = at
         spec.full_width = spec.full_height = 50

@@ -102,7 +102,7 @@ void add_apply(CommandLine& program) {
         .suggest({"exr", "png", "tif", "jpg", "webp", "dpx"})
         .group("Output");
     const Option op = command.add("--operator", options->op,
-                                  "operator[:preset], .tone file or LUT (default AgX)");
+                                  "operator[:preset], file or formula (default AgX)");
     op.value("NAME").suggest(suggest_operators).group("Operator");
     options->input = "auto";
     add_view_options(command, *options);

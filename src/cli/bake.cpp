@@ -154,7 +154,7 @@ void add_bake(CommandLine& program) {
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
     const char* const table = "Table";
-    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT")
+    command.add("operator", options->op, "operator, operator:preset, .tone file, LUT or formula")
         .suggest(suggest_operators);
     command.add("-o", options->file, "file to write").value("FILE").group(output);
     command

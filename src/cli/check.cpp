@@ -86,7 +86,7 @@ void add_check(CommandLine& program) {
     const Command command =
         program.add("check", "Check an operator against the laws of tone curves.");
     command.group("Checks");
-    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT")
+    command.add("operator", options->op, "operator, operator:preset, .tone file, LUT or formula")
         .suggest(suggest_operators)
         .required();
     add_operator_options(command, *options);

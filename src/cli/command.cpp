@@ -53,11 +53,14 @@ View ViewOptions::view(const SourceColor& color) const {
 
 const OperatorSet& operator_files() {
     static const OperatorSet files(table_reader([](const std::string& path) {
-        if (is_lut_picture(path)) return table_file_of(picture_commands().read_lut(path), path);
-        static const TableReader others = ocio_table_reader();
-        silence_opencolorio();
-        return others(path);
-    }));
+                                       if (is_lut_picture(path))
+                                           return table_file_of(picture_commands().read_lut(path),
+                                                                path);
+                                       static const TableReader others = ocio_table_reader();
+                                       silence_opencolorio();
+                                       return others(path);
+                                   }),
+                                   OperatorSet::Formulas::yes);
     return files;
 }
 

@@ -221,7 +221,7 @@ void add_eval(CommandLine& program) {
         program.add("eval", "Tone map RGB triplets from standard input, one a line.");
     command.group("Operators");
     const Option op =
-        command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
+        command.add("operator", options->op, "operator, operator:preset, .tone file, LUT or formula");
     op.suggest(suggest_operators);
     add_view_options(command, *options);
     command.option("--input")

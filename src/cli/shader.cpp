@@ -282,7 +282,7 @@ void add_shader(CommandLine& program) {
     const Command command = program.add("shader", "Write an operator as shader source.");
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
-    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT")
+    command.add("operator", options->op, "operator, operator:preset, .tone file, LUT or formula")
         .suggest(suggest_operators);
     command
         .add("--language", options->language,

@@ -120,7 +120,8 @@ void set_error(PyObject* type, std::string message) {
 
 /// The reader of .tone files and LUTs.
 const OperatorSet& operator_files() {
-    static const OperatorSet files(table_reader(picture_table_reader(ocio_table_reader())));
+    static const OperatorSet files(table_reader(picture_table_reader(ocio_table_reader())),
+                                   OperatorSet::Formulas::yes);
     return files;
 }
 

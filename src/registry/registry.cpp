@@ -77,11 +77,11 @@ constexpr AbsentOperator kAbsentOperators[] = {
     {"opendrt", "OpenDRT cannot be derived from its description (docs/choosing.md)"},
 };
 
-NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) {
+/// `op` is null if there is no such name.
+NamedOperator known_by(std::string_view name, const OperatorSet& others) {
     const std::string folded = folded_name(name);
     const auto found = operators_by_name().find(folded);
     if (found != operators_by_name().end()) return found->second;
-    std::vector<NamedChoice> choices;
     for (const std::shared_ptr<const Operator>& op : others.operators()) {
         const NamedOperators names = by_name({op.get()});
         if (const auto own = names.find(folded); own != names.end()) {
@@ -89,8 +89,15 @@ NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) 
             named.owner = op;
             return named;
         }
-        choices.push_back({op->id, {op->view, op->title}});
     }
+    return {};
+}
+
+NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) {
+    if (NamedOperator known = known_by(name, others); known.op) return known;
+    std::vector<NamedChoice> choices;
+    for (const std::shared_ptr<const Operator>& op : others.operators())
+        choices.push_back({op->id, {op->view, op->title}});
     for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
         for (const Operator& op : *operators)
             choices.push_back({op.id, {op.view, op.title}});
@@ -212,9 +219,14 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
     const std::size_t length = file_length(text);
     std::string rest(text.substr(length));
     if (length > 0 && !rest.empty() && rest.front() != ':') rest.insert(0, ":");
-    const std::vector<std::string> parts = parts_of(rest);
+    std::vector<std::string> parts = parts_of(rest);
     NamedOperator named;
-    if (length > 0) {
+    if (length == 0 && others.takes_formulas() && may_be_formula(text) &&
+        !known_by(parts.front(), others).op) {
+        parts = {std::string(text)};
+        named.owner = formula_operator(text);
+        named.op = named.owner.get();
+    } else if (length > 0) {
         named.owner = load_operator(std::string(text.substr(0, length)), others.tables());
         named.op = named.owner.get();
     } else {

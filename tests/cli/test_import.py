@@ -98,6 +98,8 @@ def check_built_in(report, command, folder):
         status, text = imported(command, SHADERS / shader, options, to)
         if report.check(f"{shader} {' '.join(options)}: {stages}", status == 0 and f" as {stages}" in text, text):
             compare(report, command, f"{shader} equals {operator}", to, operator, rgb=np.concatenate([colors(), negatives]))
+            # A function whose result is not said to be encoded is compared as light.
+            report.check(f"{shader}: the line says so", re.search(rf"; it equals (.*, )?{operator}([,;]|$)", text), text)
     names = {name for name, *_ in BUILT_IN}
     report.check("all shaders are compared", names == {path.name for path in SHADERS.iterdir()})
 
@@ -133,6 +135,12 @@ def check_command(report, command, folder):
     _, text = imported(command, gamma, [*exposure, "--encoded", "linear"], other)
     report.check("--encoded linear: no warning", "warning" not in text, text)
     before = other.read_bytes()
+    (folder / "bright.glsl").write_text("float f(float x) { float y = x/(x + 0.18); return y; }\n")
+    _, text = imported(command, folder / "bright.glsl", [], folder / "bright.tone")
+    # 0.5 is 0.735 in sRGB.
+    report.check("a bright mid gray is a warning", "mid gray is shown as 0.74" in text and "--encoded" in text, text)
+    _, text = imported(command, folder / "bright.glsl", ["--encoded", "linear"], folder / "bright.tone")
+    report.check("--encoded: no such warning", "warning" not in text, text)
     punchy = "vec3 f(vec3 c) { c = c - 0.1; return pow(c, vec3(1.35)); }\n"
     (folder / "punchy.glsl").write_text(punchy)
     _, text = imported(command, folder / "punchy.glsl", [], folder / "punchy.tone")

@@ -63,6 +63,7 @@ def check_colors(report, tw, command):
                  "--display", "display_p3", "--engine", "reference", "--digits", "17"), 1e-15)
     strided = light((8, 8, 6))[:, ::2, ::2]
     report.compare("evaluate of a view of an array", tw.evaluate("clamp", strided), srgb(strided), 1e-14)
+    report.compare("evaluate of a formula", tw.evaluate("x/(1+x)", np.array([[1.0, 3, -2]]), display="linear"), np.array([[0.5, 0.75, 0]]), 1e-15)
     report.check("evaluate: NaN and infinities", np.isfinite(tw.evaluate("hable", [[np.nan, np.inf, -np.inf]])).all())
     report.compare("evaluate, input sRGB", tw.evaluate("clamp", [[0.5, 0.01, 1]], input="sRGB"),
                    np.array([[0.5, 0.01, 1]]), 1e-12)

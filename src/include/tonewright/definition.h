@@ -68,6 +68,16 @@ using TableReader = std::function<TableFile(const std::string& path)>;
 [[nodiscard]] TONEWRIGHT_API std::shared_ptr<const Operator> parse_operator(
     std::string_view text, const std::string& name, const TableReader& tables = {});
 
+/// A formula as an operator, as people type it: "x/(1 + x)". A formula of x maps each channel; one
+/// of r, g, b gives all three. Three formulas with commas between them give red, green and blue.
+/// Input and output are linear Rec.709, the output for a display's white of 1; negatives are
+/// clamped at 0 first. The grammar is that of .tone files. name() is the text.
+/// @throws Error  no formula, more than 4096 characters, or a result that is not finite
+[[nodiscard]] TONEWRIGHT_API std::shared_ptr<const Operator> formula_operator(
+    std::string_view text);
+/// True for a text with x, r, g or b and a sign of arithmetic.
+[[nodiscard]] TONEWRIGHT_API bool may_be_formula(std::string_view text);
+
 /// A LUT as an operator, with the parameters `input` (encoding), `space` (of the encoded light) and
 /// `output` (display, or `linear`). Their defaults come from the file.
 [[nodiscard]] TONEWRIGHT_API std::shared_ptr<const Operator> operator_of_table(

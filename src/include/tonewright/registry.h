@@ -33,8 +33,11 @@ inline constexpr std::string_view kDefaultOperator = "agx_blender";
 class TONEWRIGHT_API OperatorSet {
   public:
     OperatorSet() = default;
-    /// @param tables  reads LUTs as operators, and the LUTs of .tone files
-    explicit OperatorSet(TableReader tables) : tables_(std::move(tables)) {}
+    enum class Formulas : bool { no, yes };
+    /// @param tables    reads LUTs as operators, and the LUTs of .tone files
+    /// @param formulas  yes: a text that is neither a name nor a file may be a formula
+    explicit OperatorSet(TableReader tables, Formulas formulas = Formulas::no)
+        : tables_(std::move(tables)), takes_formulas_(formulas == Formulas::yes) {}
 
     /// @throws Error  its id, view or title is that of another operator of the set or of a built-in
     ///                one
@@ -43,9 +46,11 @@ class TONEWRIGHT_API OperatorSet {
         return operators_;
     }
     [[nodiscard]] const TableReader& tables() const { return tables_; }
+    [[nodiscard]] bool takes_formulas() const { return takes_formulas_; }
 
   private:
     TableReader tables_;
+    bool takes_formulas_ = false;
     std::vector<std::shared_ptr<const Operator>> operators_;
 };
 
@@ -63,6 +68,9 @@ class TONEWRIGHT_API OperatorSet {
 /// path may contain `:` and blanks. The file is read on every call, a LUT through the set's reader.
 /// A text that begins with an operator's name and a `:` names that operator; with `./` before it, a
 /// file.
+///
+/// If the set takes formulas, any other text that may_be_formula() is one, to its end:
+/// "x < 1 ? x : 1". @see formula_operator
 ///
 /// @param settings  further settings, parameter name -> text
 /// @param look      look id or title, or empty

@@ -105,6 +105,7 @@ void bake_one(Options& options) {
     LutNodes nodes = LutNodes::automatic;
     if (options.nodes == "sampled") nodes = LutNodes::sampled;
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
+    if (options.nodes == "smooth") nodes = LutNodes::smooth;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
     if (const std::string text = stand_in_warning(request.view.op, "LUT"); !text.empty())
@@ -113,7 +114,8 @@ void bake_one(Options& options) {
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
     request.size = lut.size;
-    if (const std::string text = ringing_warning(options.file, request, baked); !text.empty())
+    if (const std::string text = lut_warning(options.file, request, baked, host != nullptr);
+        !text.empty())
         warn(text);
     if (is_picture) {
         picture_commands().write_lut(lut, request.format, options.file, request.bits.value_or(16));
@@ -121,11 +123,14 @@ void bake_one(Options& options) {
         write_text_atomically(options.file, write_lut(baked, request));
     }
     print_result(fmt::format(
-        "{}: {}D, {} {}, {} in ({}), error max {}, 99.9 % {}, mean {} ({} interpolation{})",
-        options.file, lut.dimension, lut.size, lut.dimension == 3 ? "a side" : "entries",
+        "{}: {}D, {} {}, {} in ({}), {} interpolation{}; on photographs {}", options.file,
+        lut.dimension, lut.size, lut.dimension == 3 ? "a side" : "entries",
         lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
-        rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean), error.interpolation,
-        baked.is_fitted ? ", fitted nodes" : ""));
+        error.interpolation, baked.is_fitted ? ", fitted nodes" : "",
+        to_string(error.photographs)));
+    print_result(fmt::format("{}: on every color of its input: error max {}, 99.9 % {}, mean {}",
+                             options.file, rounded_up(error.max), rounded_up(error.p999),
+                             rounded_up(error.mean)));
     const std::string clipped = to_string(measure_clipping(request, lut));
     if (!clipped.empty()) {
         print_result(fmt::format("{}: clips what {} would show {}", options.file,
@@ -185,8 +190,8 @@ void add_bake(CommandLine& program) {
         .group(table);
     command
         .add("--max-error", options->max_error,
-             "choose the smallest size up to 129 whose largest error, in code values, is at most "
-             "this")
+             "choose the smallest size up to 129 whose error on photographs (99.9 %), in code "
+             "values, is at most this")
         .value("VALUE")
         .group(table);
     const Option one =
@@ -197,9 +202,10 @@ void add_bake(CommandLine& program) {
         .excludes(one);
     command
         .add("--nodes", options->nodes,
-             "values at grid points: `sampled`, `fitted` (least error) or `auto` (no rings first)")
+             "values at grid points: `auto` (nearest on photographs, without rings), `sampled`, "
+             "`fitted` (least error on all colors) or `smooth` (follows lamps)")
         .value("NAME")
-        .choices({"auto", "sampled", "fitted"})
+        .choices({"auto", "sampled", "fitted", "smooth"})
         .show_default()
         .group(table);
     command

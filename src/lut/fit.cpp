@@ -10,6 +10,7 @@
 #include "lut/in_parallel.h"
 #include "lut/picture_color.h"
 #include "lut/tetrahedron.h"
+#include "measure/photographs.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 
@@ -54,7 +55,8 @@ class Fit {
           n_(static_cast<std::size_t>(problem.edge)),
           node_count_(n_ * n_ * n_),
           pad_(n_ * n_ + n_ + 1),
-          threads_(options.thread_count) {
+          threads_(options.thread_count),
+          photograph_share_(options.photograph_share) {
         for (std::size_t mask = 0; mask < 8; ++mask)
             step_[mask] = node_step(mask, n_);
         const double wanted = options.samples_per_node * static_cast<double>(node_count_);
@@ -217,6 +219,8 @@ class Fit {
     [[nodiscard]] Vector3 draw_color(std::size_t i, SampleRandom& random,
                                      const Matrix3& from_rec709) const {
         Vector3 color{};
+        if (photograph_share_ > 0 && random.uniform(0, 1) < photograph_share_)
+            return multiply(from_rec709, draw_photograph_color(random));
         if (is_picture_color(i)) return multiply(from_rec709, draw_picture_color(random));
         double brightest = std::log2(problem_.axis.top);
         if (random.uniform(0, 10) < 7) brightest = std::min(brightest, kUsualBrightest);
@@ -364,6 +368,7 @@ class Fit {
     std::size_t node_count_;
     std::size_t pad_;
     unsigned threads_;
+    double photograph_share_;
     std::size_t sample_count_ = 0;
     std::array<std::size_t, 8> step_{};  // from a node to the one that a mask of steps leads to
     std::array<Plane, 3> start_;

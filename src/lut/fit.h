@@ -58,6 +58,8 @@ struct CubeFitOptions {
     std::size_t largest_sample_count = 4000000;
     /// 0: one per hardware thread. The nodes do not depend on it.
     unsigned thread_count = 0;
+    /// Share of colors that are drawn from photographs, [0, 1]. They count where they are dense.
+    double photograph_share = 0;
 };
 
 /// RGB at the nodes, blue fastest: nodes[3 * ((r * edge + g) * edge + b) + c], in double from the

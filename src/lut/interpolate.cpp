@@ -6,11 +6,13 @@
 #include <span>
 
 #include "base/random.h"
+#include "lut/display_code.h"
 #include "lut/half_domain.h"
 #include "lut/node_weights.h"
 #include "lut/shaper.h"
 #include "lut/table_input.h"
 #include "measure/error_metric.h"
+#include "measure/photographs.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
@@ -169,6 +171,69 @@ class Comparison {
     ReferenceEngine engine_;
 };
 
+/// The error that the share of the colors stays within.
+double percentile_of(const std::vector<double>& errors, const std::vector<double>& share,
+                     double wanted) {
+    std::vector<std::size_t> order(errors.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return errors[a] < errors[b]; });
+    double sum = 0;
+    for (const std::size_t i : order) {
+        sum += share[i];
+        if (sum >= wanted) return errors[i];
+    }
+    return errors.empty() ? 0 : errors[order.back()];
+}
+
+PhotographError measure_photographs(const Comparison& comparison, const LutRequest& request,
+                                    bool lut_is_unbounded) {
+    constexpr double kWithin = 0.999;
+    constexpr double kCode = 1.0 / 255;
+    const PhotographColors& colors = photograph_colors();
+    const std::vector<float> light =
+        photograph_light(find_input_space(request.view.input).primaries);
+    std::vector<double> shown;
+    std::vector<double> wanted;
+    (void)comparison.errors(light, shown, wanted);
+    const DisplayCode code(request.view);
+    code.encode(shown);
+    code.encode(wanted);
+    PhotographError error;
+    std::vector<double> errors;
+    std::vector<double> shares;
+    double inside = 0;
+    for (std::size_t i = 0; i < shown.size(); i += 3) {
+        const double share = colors.share[i / 3];
+        const float brightest = *std::max_element(&light[i], &light[i] + 3);
+        const bool is_inside =
+            lut_is_unbounded || static_cast<double>(brightest) <= request.encoding.scene_hi;
+        double worst = 0;
+        for (std::size_t c = 0; is_inside && c < 3; ++c)
+            worst = std::max(worst, std::fabs(shown[i + c] - wanted[i + c]));
+        errors.push_back(worst);
+        shares.push_back(is_inside ? share : 0);
+        inside += shares.back();
+        error.mean += shares.back() * worst;
+        if (worst > kCode) error.share += share;
+    }
+    error.outside = 1 - inside;
+    if (!(inside > 0)) return error;
+    error.mean /= inside;
+    error.share /= inside;
+    error.p999 = percentile_of(errors, shares, kWithin * inside);
+    double most = -1;
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        const double excess = shares[i] * (errors[i] - error.p999);
+        if (excess <= most) continue;
+        most = excess;
+        error.worst = description_of({static_cast<double>(colors.rgb[3 * i]),
+                                      static_cast<double>(colors.rgb[3 * i + 1]),
+                                      static_cast<double>(colors.rgb[3 * i + 2])});
+    }
+    return error;
+}
+
 }  // namespace
 
 Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear) {
@@ -262,6 +327,7 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
         result.delta_e_p999 = seen.p999;
         result.delta_e_mean = seen.mean;
     }
+    result.photographs = measure_photographs(comparison, request, lut.is_half_domain);
     return result;
 }
 

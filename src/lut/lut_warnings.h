@@ -7,10 +7,12 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// One line: why a 3D LUT does not follow its operator in saturated highlights, and the remedy.
-/// Empty if it follows.
-[[nodiscard]] TONEWRIGHT_API std::string ringing_warning(const std::string& file,
-                                                         const LutRequest& request,
-                                                         const BakedLut& baked);
+/// One line: a 3D LUT rings, or is a code off on more than a twentieth of photographs; and the
+/// remedy. Empty if neither, or for photographs if nothing helps.
+/// @param is_for_application  the input is that of an application
+[[nodiscard]] TONEWRIGHT_API std::string lut_warning(const std::string& file,
+                                                     const LutRequest& request,
+                                                     const BakedLut& baked,
+                                                     bool is_for_application);
 
 TONEWRIGHT_NAMESPACE_END

@@ -8,11 +8,13 @@
 #include <cmath>
 
 #include "base/format_number.h"
+#include "lut/display_code.h"
 #include "lut/in_parallel.h"
 #include "lut/node_weights.h"
 #include "lut/table_input.h"
 #include "measure/chart_colors.h"
 #include "measure/error_metric.h"
+#include "measure/photographs.h"
 #include "tonewright/engine.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -26,12 +28,6 @@ constexpr std::size_t kPlaces =
     static_cast<std::size_t>((kBrightest - kDarkest) * kStepsPerStop) + 1;
 
 double stops_of(std::size_t place) { return kDarkest + static_cast<double>(place) / kStepsPerStop; }
-
-/// True if the output is display-linear, not a code value.
-bool is_light(const View& view) {
-    if (view.display == kNativeOutput) return view.op.output() != OutputKind::code_value;
-    return view.display == kLinearOutput;
-}
 
 /// Colors at rising exposures as inputs of a LUT, and the results of the operator. All planes hold
 /// kPlaces entries per color, color by color.
@@ -67,47 +63,6 @@ Rays make_rays(const std::vector<NamedColor>& colors, const Lut& lut, const LutR
         rays.wanted[i % 3].push_back(wanted[i]);
     return rays;
 }
-
-/// Encodes display-linear as sRGB, so that a step of 1/255 is as visible as in code values.
-class Code {
-  public:
-    explicit Code(const View& view) : is_light_(is_light(view)) {
-        if (!is_light_) return;
-        const Expr encode = srgb_encode(Expr::input());
-        const Expr decode = srgb_decode(Expr::input());
-        for (std::size_t i = 0; i <= kSteps; ++i) {
-            const double x = static_cast<double>(i) / kSteps;
-            encode_.push_back(evaluate(encode, x * x));
-            decode_.push_back(evaluate(decode, x));
-        }
-    }
-
-    [[nodiscard]] double of(double value) const {
-        return is_light_ ? at(encode_, std::sqrt(std::clamp(value, 0.0, 1.0))) : value;
-    }
-    [[nodiscard]] double value(double code) const {
-        return is_light_ ? at(decode_, std::clamp(code, 0.0, 1.0)) : code;
-    }
-    void encode(std::vector<double>& values) const {
-        if (!is_light_) return;
-        for (double& value : values)
-            value = of(value);
-    }
-
-  private:
-    /// Straight lines between this many have an error of 1e-6; the bounds are 1/255 and 0.02.
-    static constexpr std::size_t kSteps = 4096;
-
-    static double at(const std::vector<double>& table, double x) {
-        const double place = x * kSteps;
-        const auto i = std::min(static_cast<std::size_t>(place), kSteps - 1);
-        return table[i] + (place - static_cast<double>(i)) * (table[i + 1] - table[i]);
-    }
-
-    bool is_light_;
-    std::vector<double> encode_;  // over the square root of light
-    std::vector<double> decode_;
-};
 
 /// Largest fall between two positions of a ray, minus the fall of the operator between them.
 struct Fall {
@@ -170,6 +125,22 @@ std::vector<NamedColor> dense_colors() {
     return colors;
 }
 
+/// Share of the pixels of photographs that each node shows.
+std::vector<double> photograph_shares(const Lut& lut, const LutRequest& request, bool trilinear) {
+    const std::vector<double> place =
+        table_input(lut, request, photograph_light(find_input_space(request.view.input).primaries));
+    const auto edge = static_cast<std::size_t>(lut.size);
+    std::vector<double> shares(edge * edge * edge, 0.0);
+    const std::vector<double>& share = photograph_colors().share;
+    for (std::size_t i = 0; i < share.size(); ++i) {
+        const NodeWeights at =
+            node_weights({place[3 * i], place[3 * i + 1], place[3 * i + 2]}, edge, trilinear);
+        for (std::size_t k = 0; k < at.count; ++k)
+            shares[at.node[k]] += share[i] * at.weight[k];
+    }
+    return shares;
+}
+
 /// Change of a weighted sum of values with each node.
 struct Slopes {
     std::array<std::size_t, 16> node{};
@@ -204,7 +175,7 @@ LutRinging measure_ringing(const Lut& lut, const LutRequest& request, bool trili
         for (std::size_t c = 0; c < 3; ++c)
             shown[c].push_back(out[c]);
     }
-    const Code code(request.view);
+    const DisplayCode code(request.view);
     std::vector<double> errors(shown[0].size(), 0);
     for (std::size_t c = 0; c < 3; ++c) {
         code.encode(shown[c]);
@@ -226,7 +197,7 @@ LutRinging measure_ringing(const Lut& lut, const LutRequest& request, bool trili
     return result;
 }
 
-void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
+void fit_rays(Lut& lut, const LutRequest& request, bool trilinear, const RayFit& options) {
     // Most rounds only check rays that broke a bound in the previous round.
     constexpr int kRounds = 128;
     constexpr int kAllEvery = 8;
@@ -238,7 +209,7 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
     constexpr double kTolerance = 0.6 * kLargestFall;
     const auto edge = static_cast<std::size_t>(lut.size);
     Rays rays = make_rays(dense_colors(), lut, request);
-    const Code code(request.view);
+    const DisplayCode code(request.view);
     std::vector<NodeWeights> weights;
     weights.reserve(rays.input.size() / 3);
     for (std::size_t i = 0; i < rays.input.size(); i += 3) {
@@ -248,6 +219,14 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
     const auto [lowest, highest] = std::minmax_element(lut.values.begin(), lut.values.end());
     const float lo = *lowest;
     const float hi = *highest;
+    // Nodes that photographs use a thousand times more move a thousand times less.
+    constexpr double kUnused = 1e-4;
+    std::vector<double> mobility(edge * edge * edge, 1);
+    if (options.spares_photographs) {
+        mobility = photograph_shares(lut, request, trilinear);
+        for (double& m : mobility)
+            m = 1 / (1 + m / kUnused);
+    }
     in_parallel(3, 0, [&](std::size_t c) {
         code.encode(rays.wanted[c]);
         const auto value_at = [&](const NodeWeights& at) {
@@ -261,11 +240,13 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
         const auto raise = [&](const Slopes& slopes, double by) {
             double square = 0;
             for (std::size_t k = 0; k < slopes.count; ++k)
-                square += slopes.slope[k] * slopes.slope[k];
-            if (square < 1e-9) return;
+                square += mobility[slopes.node[k]] * slopes.slope[k] * slopes.slope[k];
+            if (square < 1e-12) return;
             for (std::size_t k = 0; k < slopes.count; ++k) {
                 float& v = lut.values[3 * slopes.node[k] + c];
-                v = std::clamp(v + static_cast<float>(by / square * slopes.slope[k]), lo, hi);
+                v = std::clamp(v + static_cast<float>(by / square * mobility[slopes.node[k]] *
+                                                      slopes.slope[k]),
+                               lo, hi);
             }
         };
         std::vector<bool> is_active(rays.count, true);
@@ -285,7 +266,7 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
         };
         for (int round = 0; round < kRounds; ++round) {
             const bool takes_all = round % kAllEvery == 0;
-            const bool has_band = round < kRounds - kFallsOnly;
+            const bool has_band = options.has_band && round < kRounds - kFallsOnly;
             bool is_done = true;
             for (std::size_t ray = 0; ray < rays.count; ++ray) {
                 if (!takes_all && !is_active[ray]) continue;

@@ -196,7 +196,7 @@ Lut sample_lut(const LutRequest& request) {
     return lut;
 }
 
-Lut fit_lut(const LutRequest& request, const Lut& sampled) {
+Lut fit_lut(const LutRequest& request, const Lut& sampled, double photograph_share) {
     if (sampled.dimension != 3)
         throw Error("bake: a 1D table has no grid to fit; expected a 3D LUT");
     CubeProblem problem;
@@ -209,7 +209,7 @@ Lut fit_lut(const LutRequest& request, const Lut& sampled) {
         std::minmax_element(sampled.values.begin(), sampled.values.end());
     problem.lo = static_cast<double>(*lowest);
     problem.hi = static_cast<double>(*highest);
-    const std::vector<double> nodes = fit_cube(problem);
+    const std::vector<double> nodes = fit_cube(problem, {.photograph_share = photograph_share});
     const auto n = static_cast<std::size_t>(sampled.size);
     Lut lut = sampled;
     for (std::size_t i = 0; i < n * n * n; ++i) {

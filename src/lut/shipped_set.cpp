@@ -98,18 +98,22 @@ std::string manifest(const std::vector<ShippedLut>& luts) {
         "decimals,nodes,host_interpolation,tetrahedral_max,tetrahedral_p999,tetrahedral_mean,"
         "tetrahedral_max_dE_ITP,tetrahedral_p999_dE_ITP,tetrahedral_mean_dE_ITP,trilinear_max,"
         "trilinear_p999,trilinear_mean,trilinear_max_dE_ITP,trilinear_p999_dE_ITP,"
-        "trilinear_mean_dE_ITP,rays_p999,rays_fall,content_hash\n";
+        "trilinear_mean_dE_ITP,rays_p999,rays_fall,photographs_p999,photographs_mean,"
+        "photographs_share,content_hash\n";
     for (const ShippedLut& lut : luts) {
         const LutRequest& r = lut.request;
-        text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                            lut.path, csv_field(r.view.op.label), lut.set->host->id, r.view.input,
-                            r.encoding.id, r.encoding.scene_lo, r.encoding.scene_hi, r.view.display,
-                            name_of(r.format), lut.lut.size, r.bits ? std::to_string(*r.bits) : "",
-                            r.decimals ? std::to_string(*r.decimals) : "",
-                            lut.is_fitted ? "fitted" : "sampled", error_at_host(lut).interpolation,
-                            error_fields(lut.tetrahedral), error_fields(lut.trilinear),
-                            three_digits_up(lut.ringing.p999), three_digits_up(lut.ringing.fall),
-                            content_hash(lut.contents));
+        const PhotographError& photographs = error_at_host(lut).photographs;
+        text += fmt::format(
+            "{},{},{},{},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", lut.path,
+            csv_field(r.view.op.label), lut.set->host->id, r.view.input, r.encoding.id,
+            r.encoding.scene_lo, r.encoding.scene_hi, r.view.display, name_of(r.format),
+            lut.lut.size, r.bits ? std::to_string(*r.bits) : "",
+            r.decimals ? std::to_string(*r.decimals) : "", lut.is_fitted ? "fitted" : "sampled",
+            error_at_host(lut).interpolation, error_fields(lut.tetrahedral),
+            error_fields(lut.trilinear), three_digits_up(lut.ringing.p999),
+            three_digits_up(lut.ringing.fall), three_digits_up(photographs.p999),
+            three_digits_up(photographs.mean), three_digits_up(photographs.share),
+            content_hash(lut.contents));
     }
     return text;
 }
@@ -184,18 +188,22 @@ std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts
                 "Each file: `tonewright bake OPERATOR --for {} --size SIZE{} -o FILE`, without "
                 "--size where the file has entries; {} interpolation, {:+.1f} stops from 0.18 at "
                 "input 1.\n\n"
-                "| operator | file | size | input | output | max error | 99.9 % | mean | picture "
-                "|\n|---|---|---|---|---|---|---|---|---|\n",
+                "| operator | file | size | input | output | photographs: 99.9 % | mean | above "
+                "one code | every color: 99.9 % | picture |\n|---|---|---|---|---|---|---|---|---|"
+                "---|\n",
                 host.id, r.decimals ? fmt::format(" --decimals {}", *r.decimals) : "",
                 is_trilinear(host) ? "trilinear" : "tetrahedral",
                 std::log2(r.encoding.scene_hi / 0.18));
         }
         is_first = false;
-        text += fmt::format("| {} | [{}]({}) | {} | {}, {} | {} | {} | {} | {} | ![{}]({}) |\n",
-                            r.view.op.op->title, lut.path.substr(lut.path.find('/') + 1), lut.path,
-                            size_text(lut), r.encoding.title, find_input_space(r.view.input).title,
-                            output_title(r), rounded_up(error.max), rounded_up(error.p999),
-                            rounded_up(error.mean), r.view.op.op->id, lut.thumbnail);
+        constexpr double kCodes = 255;
+        text += fmt::format(
+            "| {} | [{}]({}) | {} | {}, {} | {} | {:.2f} | {:.2f} | {:.2g} % | {:.1f} | ![{}]({}) "
+            "|\n",
+            r.view.op.op->title, lut.path.substr(lut.path.find('/') + 1), lut.path, size_text(lut),
+            r.encoding.title, find_input_space(r.view.input).title, output_title(r),
+            kCodes * error.photographs.p999, kCodes * error.photographs.mean,
+            100 * error.photographs.share, kCodes * error.p999, r.view.op.op->id, lut.thumbnail);
     }
     return text;
 }
@@ -217,14 +225,14 @@ std::string readme(const std::vector<ShippedLut>& luts) {
         "it rings. Every file here follows its\noperator along rising exposure of the test "
         "chart's lamps and hues: 99.9 % of the errors are within 0.02,\nand no channel falls by "
         "more than 1/255 where the operator's does not.\n\n"
-        "Errors are differences of code values from the double-precision operator (one 8-bit code "
-        "value is 0.0039);\nfor Unity, of display-linear values. The maximum is of all colors "
-        "that the input encoding can hold,\nincluding the most saturated colors of the working "
-        "gamut, which operators made for Rec.709 clip. 99.9 %\nand mean are of the sample set: "
-        "grays, grids of Rec.709, Rec.2020 and AP1 at five exposures, random\ncolors. "
-        "`MANIFEST.csv` has the figures for both interpolations, the color differences, and the "
-        "errors and\nfalls along those rays. Generated by `tonewright bake --all luts`; do not "
-        "edit.\n";
+        "Errors are differences from the double-precision operator in 8-bit codes, [0, 255]; for "
+        "Unity, of display-linear\nvalues as sRGB shows them. *Photographs* are colors as "
+        "photographs and renders contain them, up to the brightest\nlight that the input holds; "
+        "*every color* is the sample set: grays, grids of Rec.709, Rec.2020 and AP1 at five\n"
+        "exposures, random colors. `MANIFEST.csv` has the figures for both interpolations as code "
+        "values of 0 to 1, with\nthe maximum, the color differences, and the errors and falls "
+        "along "
+        "those rays. Generated by\n`tonewright bake --all luts`; do not edit.\n";
     for (const LutPresetSet* set : sets_of(luts))
         text += section(*set, luts);
     return text;

@@ -35,6 +35,33 @@ void add_error_lines(std::vector<std::string>& lines, const LutError& e) {
     }
 }
 
+/// Two digits, rounded up: "0.05", "6.2", "41".
+std::string two_digits_up(double value) {
+    if (!(value > 0)) return "0";
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    return shortest(std::ceil(value / unit - 1e-9) * unit);
+}
+
+}  // namespace
+
+std::string to_string(const PhotographError& error) {
+    constexpr double kCodes = 255;
+    std::string text =
+        fmt::format("99.9 % within {} codes of 255, mean {}", two_digits_up(kCodes * error.p999),
+                    two_digits_up(kCodes * error.mean));
+    const auto percent = [](double share) {
+        return 100 * share < 0.01 ? "less than 0.01" : two_digits_up(100 * share);
+    };
+    text += error.share > 0 ? fmt::format(", {} % of the pixels more than one off, most at {}",
+                                          percent(error.share), error.worst)
+                            : ", no pixel more than one off";
+    if (error.outside > 0)
+        text += fmt::format("; {} % are brighter than the input holds", percent(error.outside));
+    return text;
+}
+
+namespace {
+
 /// Hash of the numbers, not of the file.
 std::string hash_of(const Lut& lut) { return content_hash(little_endian_bytes(lut.values)); }
 
@@ -86,6 +113,8 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
         const Display& shown = find_display(display);
         lines.push_back("Output: " + shown.title + " code values (" + shown.source + ")");
     }
+    lines.push_back(fmt::format("On photographs and renders, {} interpolation: {}", e.interpolation,
+                                to_string(e.photographs)));
     add_error_lines(lines, e);
     if (other) add_error_lines(lines, *other);
     lines.emplace_back(

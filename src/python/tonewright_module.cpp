@@ -450,7 +450,8 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
         const py::gil_scoped_release release;
         baked = bake_lut(request, LutNodes::automatic, reader && is_trilinear(*reader));
         request.size = baked.lut.size;
-        if (const std::string text = ringing_warning(file, request, baked); !text.empty())
+        if (const std::string text = lut_warning(file, request, baked, is_own_encoding);
+            !text.empty())
             warn(text);
         if (is_picture_format(request.format)) {
             const int bits = request.bits.value_or(16);
@@ -465,6 +466,12 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     py::dict result;
     result["dimension"] = baked.lut.dimension;
     result["size"] = baked.lut.size;
+    result["photographs"] = py::dict();
+    const PhotographError& photographs = baked.error.photographs;
+    result["photographs"]["p999"] = photographs.p999;
+    result["photographs"]["mean"] = photographs.mean;
+    result["photographs"]["above_one_code"] = photographs.share;
+    result["photographs"]["outside"] = photographs.outside;
     result["max_error"] = baked.error.max;
     result["mean_error"] = baked.error.mean;
     result["interpolation"] = baked.error.interpolation;

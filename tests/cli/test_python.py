@@ -272,12 +272,12 @@ def check_luts(report, tw, command, scratch):
            'expected format="hald", "strip" or "strip_up" with a picture, or host=',
            lambda: tw.bake("hable", str(scratch / "a.png")))
     ringing = scratch / "ringing.cube"
-    warned(report, "bake that rings", [f"{ringing} rings: along rising exposure", 'input="lin_rec709"'],
-           lambda: tw.bake("hable", ringing, size=33))
+    warned(report, "bake that is off on photographs", [f"{ringing} is more than one code of 255 off on", 'input="lin_rec2020"'],
+           lambda: tw.bake("agx_blender", ringing, size=17))
     ringing.unlink()
     warned(report, "bake of an operator that measures", ["drago measures each picture, which a LUT cannot do",
                                                          "settings={\"log_average\": ...} changes it",
-                                                         "does not follow drago in saturated highlights", "size=65"],
+                                                         "is more than one code of 255 off", "size=65"],
            lambda: tw.bake("drago", scratch / "drago.cube", size=17, input="lin_rec709"), 2)
     warned(report, "bake of one that does not", [], lambda: tw.bake("clamp", ringing, size=17, input="lin_rec709"), 0)
     raises(report, "bake into no folder", FileNotFoundError, "/nonexistent/a.cube",

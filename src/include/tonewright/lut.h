@@ -78,6 +78,26 @@ struct Lut {
     std::optional<int> decimals = {};
 };
 
+/// Difference between a LUT and the double reference on colors as photographs and renders contain
+/// them, up to the brightest light of the LUT's input: in code values of a display, light in those
+/// of sRGB.
+struct PhotographError {
+    /// 99.9 % of the pixels have at most this error.
+    double p999 = 0;
+    double mean = 0;
+    /// Share of the pixels whose error is more than a code of 8 bits, [0, 1].
+    double share = 0;
+    /// Share of the pixels of photographs that are brighter than the input can be; they are left
+    /// out.
+    double outside = 0;
+    /// The color that contributes most beyond `p999`: "+3.4 stops, saturated blue".
+    std::string worst;
+};
+
+/// "99.9 % within 6.2 codes of 255, mean 0.43, 10 % of the pixels more than one off, most at +0.7
+/// stops, saturated red".
+[[nodiscard]] TONEWRIGHT_API std::string to_string(const PhotographError& error);
+
 /// Difference between a LUT, interpolated as its readers do, and the double reference: in code
 /// values for a display, in the operator's numbers for `linear` and `native`.
 struct LutError {
@@ -91,6 +111,7 @@ struct LutError {
     double delta_e_p999 = 0;
     double delta_e_mean = 0;
     std::string interpolation;
+    PhotographError photographs = {};
 };
 
 /// A LUT whose nodes are samples of the view.
@@ -101,9 +122,11 @@ struct LutError {
 
 /// A 3D LUT whose nodes are fitted for the least error between them. It is not always nearer to the
 /// view than a sampled one: measure both.
-/// @param sampled  the result of sample_lut()
-/// @throws Error   for a 1D table
-[[nodiscard]] TONEWRIGHT_API Lut fit_lut(const LutRequest& request, const Lut& sampled);
+/// @param sampled           the result of sample_lut()
+/// @param photograph_share  share of the colors that come from photographs, [0, 1]
+/// @throws Error            for a 1D table
+[[nodiscard]] TONEWRIGHT_API Lut fit_lut(const LutRequest& request, const Lut& sampled,
+                                         double photograph_share = 0);
 
 /// Output of the LUT for its input `rgb` in [0, 1] (for a half-domain table: scene-linear). Linear
 /// in 1D; tetrahedral or trilinear in 3D.
@@ -166,11 +189,18 @@ struct LutClipping {
 /// by up to 1.8e-03"; empty if nothing is clipped.
 [[nodiscard]] TONEWRIGHT_API std::string to_string(const LutClipping& clipping);
 
-/// Values of the nodes of a 3D LUT: sampled, fitted, or `automatic`. `automatic` makes both, and
-/// changes the nodes of a LUT that rings just enough. It takes the one that follows the operator
-/// along the rays of LutRinging. If both or neither do, it takes the one with the smaller mean and
-/// 99.9th percentile of errors.
-enum class LutNodes : unsigned char { automatic, sampled, fitted };
+/// Values of the nodes of a 3D LUT.
+enum class LutNodes : unsigned char {
+    /// The nearest to the operator on photographs of those that do not ring: fitted to the colors
+    /// of
+    /// photographs, or sampled. Rings are taken out where photographs have no colors.
+    automatic,
+    sampled,
+    fitted,
+    /// Sampled or fitted, and changed as little as needed to follow the operator along the rays of
+    /// LutRinging, also where photographs get worse.
+    smooth
+};
 
 struct BakedLut {
     Lut lut;
@@ -185,9 +215,7 @@ struct BakedLut {
 /// A LUT, rounded as its format requires, and its error.
 /// @param trilinear  the interpolation of its reader: trilinear instead of tetrahedral
 /// @param max_error  instead of a size: the smallest of 17, 25, 33, 49, 65, 97 and 129 points a
-/// side
-///                   (those that the format allows) with at most this error, in code values (with
-///                   `linear` and `native`: in the operator's numbers)
+///                   side (those that the format allows) with at most this PhotographError::p999
 /// @throws Error  as sample_lut(); both a size and a max_error; no size meets max_error
 [[nodiscard]] TONEWRIGHT_API BakedLut bake_lut(const LutRequest& request,
                                                LutNodes nodes = LutNodes::automatic,

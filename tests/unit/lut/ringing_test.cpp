@@ -19,6 +19,7 @@
 #include "lut/shipped_set.h"
 #include "lut/table_input.h"
 #include "measure/error_metric.h"
+#include "measure/photographs.h"
 #include "tonewright/chart.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
@@ -169,10 +170,102 @@ TEST(Ringing, FittedRaysTakeADentOut) {
     const LutRequest request = request_of("hable", "log2", "lin_rec709", "srgb", 33);
     Lut lut = sample_lut(request);
     lut.values[3 * ((20 * 33 + 20) * 33 + 20) + 1] -= 0.3F;
-    fit_rays(lut, request, false);
+    fit_rays(lut, request, false, {});
     const LutRinging ringing = measure_ringing(lut, request);
     EXPECT_FALSE(rings(ringing)) << to_string(ringing);
     EXPECT_LE(ringing.p999, 0.02);
+}
+
+TEST(Ringing, RepairsSparePhotographs) {
+    const LutRequest request = request_of("agx_blender", "davinci", "lin_rec2020", "rec1886", 17);
+    const Lut fitted = fit_lut(request, sample_lut(request), 0.8);
+    ASSERT_TRUE(rings(measure_ringing(fitted, request)));
+    const double before = measure_lut(fitted, request).photographs.mean;
+    Lut spared = fitted;
+    fit_rays(spared, request, false, {.has_band = false, .spares_photographs = true});
+    EXPECT_FALSE(rings(measure_ringing(spared, request)));
+    Lut bent = fitted;
+    fit_rays(bent, request, false, {});
+    const double cost = measure_lut(spared, request).photographs.mean - before;
+    const double cost_of_others = measure_lut(bent, request).photographs.mean - before;
+    EXPECT_LT(cost, cost_of_others / 2);
+}
+
+TEST(Photographs, TheirSharesAddUpToOne) {
+    const PhotographColors& colors = photograph_colors();
+    ASSERT_EQ(colors.rgb.size(), 3 * colors.share.size());
+    double sum = 0;
+    double median_side = 0;  // the share of pixels below mid gray
+    double outside = 0;      // of Rec.709
+    for (std::size_t i = 0; i < colors.share.size(); ++i) {
+        const float* rgb = &colors.rgb[3 * i];
+        sum += colors.share[i];
+        const float largest = std::max({rgb[0], rgb[1], rgb[2]});
+        EXPECT_GT(largest, 0);
+        if (largest < 0.18F) median_side += colors.share[i];
+        if (std::min({rgb[0], rgb[1], rgb[2]}) < 0) outside += colors.share[i];
+    }
+    EXPECT_NEAR(sum, 1, 1e-9);
+    // Scenes are exposed for mid gray, and few pixels are outside Rec.709.
+    EXPECT_GT(median_side, 0.3);
+    EXPECT_LT(median_side, 0.7);
+    EXPECT_LT(outside, 0.02);
+}
+
+TEST(Photographs, AConstantErrorIsStated) {
+    // Two codes more at every node.
+    const LutRequest request = request_of("clamp", "log2", "lin_rec709", "srgb", 33);
+    Lut lut = sample_lut(request);
+    const PhotographError before = measure_lut(lut, request).photographs;
+    for (float& v : lut.values)
+        v += 2.0F / 255;
+    const PhotographError error = measure_lut(lut, request).photographs;
+    EXPECT_NEAR(error.p999, 2.0 / 255 + before.p999, before.p999 + 1e-6);
+    EXPECT_NEAR(error.mean, 2.0 / 255, before.mean + 1e-6);
+    EXPECT_GT(error.share, 0.95);
+    // log2 ends at 2^6.5 times 0.18, 16.3.
+    EXPECT_GT(error.outside, 0.001);
+    EXPECT_LT(error.outside, 0.02);
+    EXPECT_EQ(error.outside, before.outside);
+}
+
+TEST(Photographs, ErrorsAreStatedInCodes) {
+    EXPECT_EQ(to_string(PhotographError{}),
+              "99.9 % within 0 codes of 255, mean 0, no pixel more than one off");
+    PhotographError error;
+    error.p999 = 5.951 / 255;
+    error.mean = 0.4301 / 255;
+    error.share = 0.1074;
+    error.outside = 0.00002;
+    error.worst = "+0.7 stops, saturated red";
+    EXPECT_EQ(
+        to_string(error),
+        "99.9 % within 6 codes of 255, mean 0.44, 11 % of the pixels more than one off, most at "
+        "+0.7 stops, saturated red; less than 0.01 % are brighter than the input holds");
+}
+
+TEST(Photographs, ColorsHaveNames) {
+    EXPECT_EQ(description_of({0.18, 0.18, 0.18}), "+0.0 stops, gray");
+    EXPECT_EQ(description_of({0.72, 0.01, 0.01}), "+2.0 stops, saturated red");
+    EXPECT_EQ(description_of({0.09, 0.09, 0.05}), "-1.0 stops, yellow");
+    EXPECT_EQ(description_of({0.05, 0.2, 0.36}), "+1.0 stops, saturated blue");
+    EXPECT_EQ(description_of({0.36, 0.2, 0.36}), "+1.0 stops, magenta");
+    EXPECT_EQ(description_of({0, 0, 0}), "black");
+}
+
+TEST(BakeLut, TheDefaultIsNearerOnPhotographsAndDoesNotRing) {
+    for (const char* op : {"agx_blender", "aces_13"}) {
+        if (op == std::string_view("aces_13") && !takes_full_counts()) continue;  // 8 seconds
+        const LutRequest request = request_of(op, "davinci", "lin_rec2020", "rec1886", 17);
+        const BakedLut baked = bake_lut(request);
+        const PhotographError& own = baked.error.photographs;
+        EXPECT_FALSE(rings(baked.ringing)) << op;
+        const BakedLut smooth = bake_lut(request, LutNodes::smooth);
+        const BakedLut sampled = bake_lut(request, LutNodes::sampled);
+        EXPECT_LT(own.mean, smooth.error.photographs.mean) << op;
+        EXPECT_LT(own.mean, sampled.error.photographs.mean) << op;
+        EXPECT_LT(own.share, smooth.error.photographs.share) << op;
+    }
 }
 
 TEST(Ringing, ATableOfOneDimensionHasNone) {

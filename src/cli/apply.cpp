@@ -101,8 +101,8 @@ void add_apply(CommandLine& program) {
         .value("EXT")
         .suggest({"exr", "png", "tif", "jpg", "webp", "dpx"})
         .group("Output");
-    const Option op = command.add("--operator", options->op,
-                                  "operator[:preset], file or formula (default AgX)");
+    const Option op =
+        command.add("--operator", options->op, "operator[:preset], file or formula (default AgX)");
     op.value("NAME").suggest(suggest_operators).group("Operator");
     options->input = "auto";
     add_view_options(command, *options);

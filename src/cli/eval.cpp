@@ -220,8 +220,8 @@ void add_eval(CommandLine& program) {
     const Command command =
         program.add("eval", "Tone map RGB triplets from standard input, one a line.");
     command.group("Operators");
-    const Option op =
-        command.add("operator", options->op, "operator, operator:preset, .tone file, LUT or formula");
+    const Option op = command.add("operator", options->op,
+                                  "operator, operator:preset, .tone file, LUT or formula");
     op.suggest(suggest_operators);
     add_view_options(command, *options);
     command.option("--input")

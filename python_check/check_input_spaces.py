@@ -271,6 +271,8 @@ NAMES = {
     "slog3": (slog3, CAMERAS["sgamut3"]), "davinci": (lambda code: davinci_decode(np.asarray(code, float)), DAVINCI),
     "unity_logc": (ENCODINGS["unity_logc"].decode, REC709),
     "unreal_log": (lambda code: 0.18 * 2 ** (14 * (code - 444 / 1023)), REC709),
+    # Blender 5.2, config.ocio: the allocation of AgX.
+    "agx_log": (lambda code: 0.18 * 2 ** (25 * code - 10), EGAMUT),
     "reinhard": (lambda code: code / np.maximum(1 - code, 1 / HALF_MAX), REC709),
     "pq": (pq, PRIMARIES["rec2020"]), "pq:203": (lambda code: pq(code) * 100 / 203, PRIMARIES["rec2020"]),
     "hlg": (lambda code: hlg_scene(code) / 0.1 ** (1 / 1.2), PRIMARIES["rec2020"]),

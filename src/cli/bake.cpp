@@ -202,8 +202,7 @@ void add_bake(CommandLine& program) {
         .excludes(one);
     command
         .add("--nodes", options->nodes,
-             "values at grid points: `auto` (nearest on photographs, without rings), `sampled`, "
-             "`fitted` (least error on all colors) or `smooth` (follows lamps)")
+             "values at grid points: `auto` (best on photographs), `sampled`, `fitted` or `smooth`")
         .value("NAME")
         .choices({"auto", "sampled", "fitted", "smooth"})
         .show_default()
@@ -229,7 +228,8 @@ void add_bake(CommandLine& program) {
         "Formats: cube, clf, ctf, spi1d, spi3d, csp, resolve_cube (1D and 3D), 3dl, lut "
         "(Houdini), icc (device link); hald, strip, strip_up (pictures); raw.\n"
         "Input encodings: acescct, logc3, logc4, slog3, davinci, unity_logc, unreal_log, srgb, "
-        "reinhard (x/(x + 1)); pq[:WHITE] (cd/m2 of scene-linear 1.0); hlg[:WHITE] (scene light; "
+        "reinhard (x/(x + 1)), agx_log (the grid of agx_blender: exact for Rec.1886); pq[:WHITE] "
+        "(cd/m2 of scene-linear 1.0); hlg[:WHITE] (scene light; "
         "cd/m2 that an "
         "HLG display of 1000 cd/m2 shows for scene-linear 1.0); log2[:LOW:HIGH] (stops from "
         "0.18, default "

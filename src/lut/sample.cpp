@@ -159,8 +159,12 @@ Lut sample_lut(const LutRequest& request) {
     Lut lut;
     lut.dimension = one ? 1 : 3;
     lut.channels = one ? 1 : 3;
+    const int grid = request.encoding.grid_size;
+    const bool takes_grid =
+        traits.default_size == kDefaultCubeSize && grid > 0 && request.format != LutFormat::threedl;
     lut.size = one ? checked_size(request, kDefaultCurveSize, 2, static_cast<int>(kHalfCount))
-                   : checked_size(request, traits.default_size, traits.smallest, traits.largest);
+                   : checked_size(request, takes_grid ? grid : traits.default_size, traits.smallest,
+                                  traits.largest);
     if (!one && request.format == LutFormat::threedl && lut.size != 17 && lut.size != 33 &&
         lut.size != 65) {
         throw Error("bake: size is " + std::to_string(lut.size) +

@@ -39,7 +39,7 @@ void add_error_lines(std::vector<std::string>& lines, const LutError& e) {
 std::string two_digits_up(double value) {
     if (!(value > 0)) return "0";
     const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-    return shortest(std::ceil(value / unit - 1e-9) * unit);
+    return fmt::format("{:.3g}", std::ceil(value / unit - 1e-9) * unit);
 }
 
 }  // namespace

@@ -18,13 +18,25 @@ struct FixedEncoding {
     Expr (*encode)(const Expr&);
     Expr (*decode)(const Expr&);
     const char* input;
+    int grid_size = 0;
 };
+
+// Blender 5.2, config.ocio, AgX: log2 of light over 0.18, in E-Gamut, then 57 nodes a side.
+constexpr double kAgxDarkest = -10;
+constexpr double kAgxStops = 25;
+constexpr int kAgxGrid = 57;
+const double kAgxLowest = std::log2(0.18) + kAgxDarkest;
+
+Expr agx_log_encode(const Expr& x) {
+    return (log2(max(x, std::exp2(kAgxLowest))) - kAgxLowest) / kAgxStops;
+}
+Expr agx_log_decode(const Expr& code) { return exp2(code * kAgxStops + kAgxLowest); }
 
 Expr reinhard_encode(const Expr& x) { return max(x, 0) / (max(x, 0) + 1); }
 /// Code 1 is the largest value.
 Expr reinhard_decode(const Expr& code) { return code / max(1 - code, 1 / kHalfMax); }
 
-constexpr std::array<FixedEncoding, 9> kFixedEncodings = {{
+constexpr std::array<FixedEncoding, 10> kFixedEncodings = {{
     {"acescct", "ACEScct (Academy S-2016-001: AP1 primaries, log with a linear toe)",
      acescct_encode, acescct_decode, "lin_ap1"},
     {"logc3", "ARRI LogC3 (EI 800)", arri_logc3_encode, arri_logc3_decode, "lin_awg3"},
@@ -40,6 +52,8 @@ constexpr std::array<FixedEncoding, 9> kFixedEncodings = {{
      srgb_decode, "lin_rec709"},
     {"reinhard", "x/(x + 1) of scene-linear x (Tony McMapface)", reinhard_encode, reinhard_decode,
      "lin_rec709"},
+    {"agx_log", "log2(x / 0.18) from -10 to 15 stops, the grid of Blender's AgX", agx_log_encode,
+     agx_log_decode, "lin_egamut", kAgxGrid},
 }};
 
 constexpr std::array kEncodingsWithNumbers = {"pq", "hlg", "log2", "linear"};
@@ -107,6 +121,7 @@ InputEncoding parse_input_encoding(std::string_view text) {
         e.encode = fixed.encode(x);
         e.decode = fixed.decode(x);
         e.default_input = fixed.input;
+        e.grid_size = fixed.grid_size;
         e.scene_lo = evaluate(e.decode, 0.0);
         e.scene_hi = evaluate(e.decode, 1.0);
         return e;

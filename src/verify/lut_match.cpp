@@ -22,19 +22,13 @@ namespace {
 constexpr const char* kSceneLinear = "scene-linear";
 
 /// Encodings of common LUTs; log2 as here, in Blender's AgX and Filmic, and in T. Sobotka's AgX.
-constexpr const char* kEncodings[] = {"acescct",
-                                      "logc3",
-                                      "logc4",
-                                      "slog3",
-                                      "davinci",
-                                      "unity_logc",
-                                      "unreal_log",
-                                      "srgb",
-                                      "pq:100",
-                                      "pq:203",
-                                      "log2:-10:6.5",
-                                      "log2:-10:15",
-                                      "log2:-12.47393:4.026069"};
+constexpr const char* kEncodings[] = {"acescct",     "logc3",
+                                      "logc4",       "slog3",
+                                      "davinci",     "unity_logc",
+                                      "unreal_log",  "agx_log",
+                                      "srgb",        "pq:100",
+                                      "pq:203",      "log2:-10:6.5",
+                                      "log2:-10:15", "log2:-12.47393:4.026069"};
 constexpr const char* kDisplays[] = {"srgb", "rec1886", "g22", "display_p3", "rec2020", "linear"};
 
 struct Candidate {

@@ -22,10 +22,14 @@ struct InputEncoding {
     bool is_linear = false;
     /// Input space of the encoding, used if the user names none.
     std::string default_input = "lin_rec709";
+    /// Nodes a side of the operator that is a grid in this encoding; a 3D LUT of this size is that
+    /// grid. 0: none.
+    int grid_size = 0;
 };
 
 /// `acescct`, `logc3` (ARRI, EI 800), `logc4`, `slog3` (Sony), `davinci` (DaVinci Intermediate),
-/// `unity_logc`, `unreal_log`, `srgb`; `pq[:WHITE]` = SMPTE ST 2084, scene-linear 1 at WHITE cd/m2
+/// `unity_logc`, `unreal_log`, `srgb`, `agx_log` (E-Gamut, log2 from -10 to 15 stops: the grid of
+/// Blender's AgX); `pq[:WHITE]` = SMPTE ST 2084, scene-linear 1 at WHITE cd/m2
 /// (default 100); `hlg[:WHITE]` = HLG of ITU-R BT.2100, the scene light of each channel by its
 /// inverse OETF, where scene-linear 1 is the gray that an HLG display of 1000 cd/m2 shows at WHITE
 /// cd/m2 (default 100), without the display's OOTF, which mixes channels; `log2[:LO:HI]` = log2 of

@@ -111,6 +111,9 @@ const GrayCode kGrayCodes[] = {
     // IEC 61966-2-1
     {"srgb", 0.18, 0.4613561},
     // Color.hlsl, LinearToLogC: 0.244161 log10(5.555556 x + 0.047996) + 0.386036
+    // Blender 5.2, config.ocio: 25 stops, mid gray 10 above the first.
+    {"agx_log", 0.18, 0.4},
+    {"agx_log", 0.72, 0.48},
     {"unity_logc", 0, 0.0640},
     {"unity_logc", 1, 0.5688},
 };
@@ -211,7 +214,7 @@ TEST(InputEncoding, LinearIsAStraightLine) {
 TEST(InputEncoding, DecodeInvertsEncode) {
     for (const char* text :
          {"acescct", "logc3", "logc4", "slog3", "davinci", "unity_logc", "unreal_log", "srgb",
-          "reinhard", "pq", "pq:203", "log2", "log2:-3:64", "linear:0.5:8"}) {
+          "reinhard", "agx_log", "pq", "pq:203", "log2", "log2:-3:64", "linear:0.5:8"}) {
         const InputEncoding e = parse_input_encoding(text);
         for (int i = 0; i <= 64; ++i) {
             const double code = i / 64.0;
@@ -231,10 +234,10 @@ TEST(InputEncoding, RefusesUnknownNames) {
     const auto error = [](std::string_view text) {
         return error_of([&] { (void)parse_input_encoding(text); });
     };
-    EXPECT_EQ(
-        error("acescc"),
-        "input encoding is acescc; expected acescct, logc3, logc4, slog3, davinci, "
-        "unity_logc, unreal_log, srgb, reinhard, pq, hlg, log2 or linear; did you mean acescct?");
+    EXPECT_EQ(error("acescc"),
+              "input encoding is acescc; expected acescct, logc3, logc4, slog3, davinci, "
+              "unity_logc, unreal_log, srgb, reinhard, agx_log, pq, hlg, log2 or linear; did you "
+              "mean acescct?");
     for (const char* text : {"pq:0", "pq:-1", "pq:nan", "pq:1e6", "pq:", "pq:100:2", "srgb:1"})
         EXPECT_NE(error(text).find(std::string("input encoding is ") + text), std::string::npos)
             << text;

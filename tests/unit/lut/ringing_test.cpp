@@ -244,6 +244,18 @@ TEST(Photographs, ErrorsAreStatedInCodes) {
         "+0.7 stops, saturated red; less than 0.01 % are brighter than the input holds");
 }
 
+TEST(Photographs, SmallErrorsHaveTwoDigits) {
+    PhotographError error;
+    error.p999 = 3.51e-05 / 255;
+    error.mean = 2.81e-06 / 255;
+    EXPECT_EQ(to_string(error),
+              "99.9 % within 3.6e-05 codes of 255, mean 2.9e-06, no pixel more than one off");
+    error.p999 = 138.4 / 255;
+    error.mean = 0.0991 / 255;
+    EXPECT_EQ(to_string(error),
+              "99.9 % within 140 codes of 255, mean 0.1, no pixel more than one off");
+}
+
 TEST(Photographs, ColorsHaveNames) {
     EXPECT_EQ(description_of({0.18, 0.18, 0.18}), "+0.0 stops, gray");
     EXPECT_EQ(description_of({0.72, 0.01, 0.01}), "+2.0 stops, saturated red");
@@ -266,6 +278,18 @@ TEST(BakeLut, TheDefaultIsNearerOnPhotographsAndDoesNotRing) {
         EXPECT_LT(own.mean, sampled.error.photographs.mean) << op;
         EXPECT_LT(own.share, smooth.error.photographs.share) << op;
     }
+}
+
+TEST(BakeLut, TheGridOfAgxIsExact) {
+    LutRequest request = request_of("agx_blender", "agx_log", "lin_egamut", "rec1886", 0);
+    request.size.reset();
+    EXPECT_EQ(sample_lut(request).size, 57);
+    const BakedLut baked = bake_lut(request, LutNodes::sampled);
+    // The rounding of 32-bit nodes and of the matrix to E-Gamut and back.
+    EXPECT_LT(baked.error.max, 1e-6);
+    EXPECT_LT(baked.error.photographs.p999, 1e-6);
+    request.format = LutFormat::threedl;  // 17, 33 or 65
+    EXPECT_EQ(sample_lut(request).size, 33);
 }
 
 TEST(Ringing, ATableOfOneDimensionHasNone) {

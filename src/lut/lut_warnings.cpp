@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "measure/error_metric.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -31,7 +33,7 @@ std::string lut_warning(const std::string& file, const LutRequest& request, cons
     if (remedy.empty() || share <= kManyPixels) return {};
     return fmt::format(
         "{} is more than one code of 255 off on {:.0f} % of the pixels of photographs{}", file,
-        100 * share, remedy);
+        std::ceil(100 * share), remedy);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, evaluate, log2_decode, need_program, pq_light, read_rgb, run, share_of, skip  # noqa: E402
+from pictures import Report, evaluate, log2_encode, need_program, pq_light, read_rgb, run, share_of, skip  # noqa: E402
 from lut_encodings import acescct_decode, davinci_decode, srgb_decode, unity_logc_decode  # noqa: E402
 from lut_encodings import logc3_decode as logc3  # noqa: E402
 
@@ -180,7 +180,7 @@ def check_formats(report, command, folder):
 
 def check_fit(report, command, folder):
     """A fitted cube is nearer between its nodes, by OpenColorIO's interpolation of colors it was not fitted to; and
-    --max-error takes the smallest size that keeps to it."""
+    --max-error takes the smallest size that keeps to it on photographs."""
     codes = np.random.default_rng(8).uniform(0, 1, (20000, 3)).astype(np.float32).astype(float)
     truth = expected_of(command, codes, "unity_logc", "linear")
     means = {}
@@ -188,23 +188,51 @@ def check_fit(report, command, folder):
         path = folder / f"{nodes}.cube"
         run(command, "bake", *OPERATOR, "--for", "unity", "--nodes", nodes, "-o", path)
         means[nodes] = np.abs(through_ocio(path, codes) - truth).max(axis=1).mean()
-    report.check(f"fitted nodes: mean error {means['fitted']:.1e}, sampled {means['sampled']:.1e}",
-                 means["fitted"] < 0.9 * means["sampled"] and means["auto"] == means["fitted"], means)
-    codes, sizes = codes[:4000], []
-    truth = evaluate(command, log2_decode(codes), "agx_sobotka")
+    # A fifth of the colors that `auto` is fitted to are no photographs', so it gains elsewhere, too.
+    report.check(f"fitted nodes: mean error {means['fitted']:.1e}, by photographs {means['auto']:.1e}, sampled {means['sampled']:.1e}",
+                 means["fitted"] < 0.9 * means["sampled"] and means["auto"] < 0.9 * means["sampled"], means)
+    light = photograph_colors(20000)
+    light = light[light.max(1) <= 0.18 * 2**6.5]  # what the encoding holds
+    codes = np.clip(log2_encode(light), 0, 1).astype(np.float32).astype(float)
+    truth = evaluate(command, light, "agx_sobotka")
+
+    def error_of(path):
+        return np.percentile(np.abs(through_ocio(path, codes) - truth).max(axis=1), 99.9)
+
+    sizes = []
+    # Another sample of the same histogram has another percentile: 20,000 colors, twenty of them beyond it.
+    sampling = 1.3
     for wanted in (0.02, 0.002):
         path = folder / f"{wanted}.cube"
         run(command, "bake", "agx_sobotka", "--3d", "--input-encoding", "log2", "--max-error", wanted, "-o", path)
         lines = path.read_text().splitlines()
         sizes.append(int(next(line for line in lines if line.startswith("LUT_3D_SIZE")).split()[1]))
-        error = np.abs(through_ocio(path, codes) - truth).max()
-        report.check(f"--max-error {wanted} takes {sizes[-1]} points: {error:.2g}", error <= wanted, error)
-    report.check("--max-error takes no more points than it has to", sizes == [17, 33], sizes)
-    for nodes in ("sampled", "fitted"):
-        path = folder / f"{nodes}25.cube"
-        run(command, "bake", "agx_sobotka", "--3d", "--input-encoding", "log2", "--size", 25, "--nodes", nodes, "-o", path)
-        error = np.abs(through_ocio(path, codes) - truth).max()
-        report.check(f"25 {nodes} points are too few for 0.002: {error:.2g}", error > 0.002, error)
+        error = error_of(path)
+        report.check(f"--max-error {wanted} takes {sizes[-1]} points: {error:.2g} on photographs", error <= wanted * sampling, error)
+    report.check("a smaller --max-error takes more points", sizes[0] == 17 < sizes[1], sizes)
+    smaller = {25: 17, 33: 25, 49: 33, 65: 49}[sizes[1]]
+    path = folder / "smaller.cube"
+    run(command, "bake", "agx_sobotka", "--3d", "--input-encoding", "log2", "--size", smaller, "-o", path)
+    error = error_of(path)
+    report.check(f"{smaller} points are too few for 0.002: {error:.2g}", error > 0.002 / sampling, error)
+
+
+def photograph_colors(count):
+    """Colors drawn from the histogram of src/measure/photograph_density.py, linear Rec.709."""
+    density = Path(__file__).resolve().parents[2] / "src" / "measure" / "photograph_density"
+    axes = dict(re.findall(r"^(DARKEST, STEP|SATURATIONS|HUES) = (.*)$", density.with_suffix(".py").read_text(), re.M))
+    darkest, step = (float(v) for v in axes["DARKEST, STEP"].split(","))
+    saturations, hues = np.array(eval(axes["SATURATIONS"])), float(axes["HUES"])  # noqa: S307
+    bins = np.array(re.findall(r"\{(\d+),(\d+),(\d+),(\d+)\}", density.with_suffix(".inc").read_text()), int)
+    rng = np.random.default_rng(11)
+    stops, saturation, hue, _count = bins[rng.choice(len(bins), count, p=bins[:, 3] / bins[:, 3].sum())].T
+    u = rng.uniform(size=(3, count))
+    largest = 0.18 * 2 ** (darkest + step * (stops + u[0]))
+    smallest = largest * (1 - (saturations[saturation] + (saturations[saturation + 1] - saturations[saturation]) * u[1]))
+    place = (hue + u[2]) * 6 / hues
+    # The hexcone: a channel is largest within a sixth of its own hue, and smallest two sixths away.
+    apart = np.abs((place[:, None] - np.array([0, 2, 4]) + 3) % 6 - 3)
+    return smallest[:, None] + (largest - smallest)[:, None] * np.clip(2 - apart, 0, 1)
 
 
 def check_clipping(report, command, folder):

@@ -81,6 +81,12 @@ std::shared_ptr<const Operator> formula_operator(std::string_view given) {
         fail(text, "it has " + std::to_string(text.size()) + " characters; expected at most " +
                        std::to_string(kLongestInline) + ", or a .tone file");
     }
+    // The text becomes a line of files and shaders, where a comment or a backslash would go on.
+    const bool has_lines = std::any_of(text.begin(), text.end(),
+                                       [](char c) { return static_cast<unsigned char>(c) < ' '; });
+    if (has_lines || text.find_first_of("#\\\x7f") != std::string_view::npos ||
+        text.find("//") != std::string_view::npos || text.find("*/") != std::string_view::npos)
+        fail(text, "it has more than one line, a comment or a backslash; expected a .tone file");
     const Names names = names_in(text);
     const bool is_of_x = std::find(names.begin(), names.end(), "x") != names.end();
     FormulaScope scope;

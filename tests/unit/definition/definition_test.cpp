@@ -557,6 +557,8 @@ TEST(InlineFormula, ThatIsWrongSaysWhere) {
     for (const auto& [text, words] : wrong)
         expect_error([t = text] { (void)formula_operator(t); }, words);
     expect_error([] { (void)formula_operator("x" + std::string(5000, '+')); }, "at most 4096");
+    for (const char* text : {"x +\n0*x", "x # c", "x // \\", "x/(1+x) */ b", "x\t\\"})
+        expect_error([text] { (void)formula_operator(text); }, "expected a .tone file");
 }
 
 TEST(LutOperator, IsShownAsItIsOnItsOwnDisplay) {

@@ -59,7 +59,9 @@ std::vector<double> errors_of(const ShippedLut& lut, std::vector<float> light) {
     const LutRequest& request = lut.request;
     const Matrix3 to_input = rgb_to_rgb(kRec709, find_input_space(request.view.input).primaries);
     for (std::size_t i = 0; i < light.size(); i += 3) {
-        const Vector3 v = multiply(to_input, Vector3{light[i], light[i + 1], light[i + 2]});
+        const Vector3 v = multiply(
+            to_input, Vector3{static_cast<double>(light[i]), static_cast<double>(light[i + 1]),
+                              static_cast<double>(light[i + 2])});
         for (std::size_t c = 0; c < 3; ++c) {
             light[i + c] = static_cast<float>(
                 std::clamp(v[c], request.encoding.scene_lo, request.encoding.scene_hi));

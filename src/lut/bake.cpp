@@ -56,8 +56,8 @@ BakedLut bake_smooth(const LutRequest& request, const Lut& sampled, bool triline
 
 /// The LUT without rings that is nearest to the operator on photographs.
 BakedLut bake_for_photographs(const LutRequest& request, const Lut& sampled, bool trilinear) {
-    // With more, colors that photographs lack get worse; with less, photographs do (measured on ten
-    // operators).
+    // With more, colors that photographs lack get worse; with less, photographs do (measured on
+    // five operators).
     constexpr double kPhotographShare = 0.8;
     // Rings are the worst, because everybody sees them. The 99.9th percentile is about ten times
     // the mean. Lamps that follow the operator may cost a quarter.

@@ -63,7 +63,7 @@ const std::vector<double>& cumulated() {
 
 const PhotographColors& photograph_colors() {
     static const PhotographColors all = [] {
-        // Enough that another seed changes the 99.9th percentile of a LUT's errors by 5 %.
+        // Every bin has one, so that no rare color is missed; frequent bins have more.
         constexpr double kColors = 40000;
         PhotographColors colors;
         SampleRandom random(1);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "measure/chart_colors.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
@@ -29,22 +31,12 @@ constexpr std::array kSaturations = {0.0, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3,
 constexpr double kHues = 24;
 constexpr double kMidGray = 0.18;
 
-/// Hue in sixths of the hexcone, red at 0 and green at 2.
-Vector3 color_of(double largest, double saturation, double hue) {
-    const double smallest = largest * (1 - saturation);
-    const auto channel = [&](double center) {
-        const double apart = std::fabs(std::remainder(hue - center, 6));
-        return smallest + (largest - smallest) * std::clamp(2 - apart, 0.0, 1.0);
-    };
-    return {channel(0), channel(2), channel(4)};
-}
-
 Vector3 draw(const Bin& bin, SampleRandom& random) {
     const double stops = kDarkest + kStep * (bin.stops + random.uniform(0, 1));
     const double saturation = std::lerp(kSaturations.at(bin.saturation),
                                         kSaturations.at(bin.saturation + 1U), random.uniform(0, 1));
-    const double hue = (bin.hue + random.uniform(0, 1)) * 6 / kHues;
-    return color_of(kMidGray * std::exp2(stops), saturation, hue);
+    const double hue = (bin.hue + random.uniform(0, 1)) / kHues;
+    return hue_color(hue, saturation, kMidGray * std::exp2(stops));
 }
 
 /// Sums of the counts, up to and with each bin.

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/strutil.h>
 
 #include "base/input_file.h"
 #include "base/strings.h"
@@ -154,6 +155,46 @@ constexpr std::array kColorNames = {'R', 'G', 'B', 'A'};
 /// destroys a reader, its errors remain for the next reader at that address.
 void forget_errors(const OIIO::ImageInput& in) { (void)in.geterror(); }
 
+/// DICOM PS3.10, 7.1: a preamble of 128 bytes, then "DICM".
+bool is_dicom(const std::string& path) {
+    std::array<char, 132> head{};
+    std::ifstream file(path, std::ios::binary);
+    return file.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
+}
+
+/// Opens a file with the reader of its extension; if that says no, with the first that says yes.
+/// `ImageInput::open` does the same, with two differences that matter: it takes the text after a ?
+/// as arguments of a reader, and it tries DCMTK on every file, which ends the process if memory is
+/// short (3.6.7, while it loads its dictionary).
+std::unique_ptr<OIIO::ImageInput> open_file(const std::string& path,
+                                            const OIIO::ImageSpec& config) {
+    OIIO::ImageSpec spec;
+    std::string reason;
+    const auto opened = [&](const std::string& format) {
+        std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(format);
+        if (!in) return in;
+        forget_errors(*in);
+        if (in->open(path, spec, config)) return in;
+        if (reason.empty()) reason = in->geterror();
+        // Its own file, but damaged or too large for memory: another reader would give less of it.
+        if (in->valid_file(path)) cannot_read(path, why_not_open(path, reason));
+        return std::unique_ptr<OIIO::ImageInput>();
+    };
+    const std::string extension = extension_of(path);
+    if (!extension.empty()) {
+        if (std::unique_ptr<OIIO::ImageInput> in = opened(extension.substr(1))) return in;
+    }
+    const std::string first_reason = reason;
+    for (const std::string& format :
+         OIIO::Strutil::splits(OIIO::get_string_attribute("input_format_list"), ",")) {
+        if (format == "null" || (format == "dicom" && !is_dicom(path))) continue;
+        if (std::unique_ptr<OIIO::ImageInput> in = opened(format)) return in;
+    }
+    (void)OIIO::geterror();  // of create()
+    cannot_read(path, why_not_open(path, first_reason.empty() ? "no reader knows its format"
+                                                              : first_reason));
+}
+
 }  // namespace
 
 std::unique_lock<std::recursive_mutex> lock_header(const std::string& path) {
@@ -176,20 +217,14 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     straight.attribute("oiio:UnassociatedAlpha", 1);
     if (!config) config = &straight;
     const std::unique_lock lock = lock_header(path);
-    std::unique_ptr<OIIO::ImageInput> in;
-    if (path.find('?') != std::string::npos && why_not_readable(path).empty()) {
-        // OpenImageIO would take the text after the ? as arguments of a reader.
-        const std::string extension = extension_of(path);
-        in = OIIO::ImageInput::create(extension.empty() ? extension : extension.substr(1));
-        if (in) forget_errors(*in);
-        OIIO::ImageSpec spec;
-        const bool is_open = in && in->open(path, spec, *config);
-        if (!is_open && in) cannot_read(path, why_not_open(path, in->geterror()));
-    } else {
-        in = OIIO::ImageInput::open(path, config);
+    // A name without a file is one that a reader understands, or has its reason in the system.
+    if (!why_not_readable(path).empty()) {
+        std::unique_ptr<OIIO::ImageInput> in;
+        if (path.find('?') != std::string::npos) in = OIIO::ImageInput::open(path, config);
+        if (!in) cannot_read(path, why_not_open(path, OIIO::geterror()));
+        return in;
     }
-    if (!in) cannot_read(path, why_not_open(path, OIIO::geterror()));
-    return in;
+    return open_file(path, *config);
 }
 
 /// Readers that follow the request for straight alpha do not all say so.

@@ -15,6 +15,7 @@
 #include "lut/lut_warnings.h"
 #include "lut/shipped_set.h"
 #include "measure/error_metric.h"
+#include "ocio/lut_chain.h"
 #include "pipeline/stand_ins.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -51,13 +52,19 @@ void require_lut_picture(const std::string& path, int bits) {
 }
 
 /// The application's settings, unless the user gives others.
-void take_from_host(Options& options, const LutApplication& host) {
+void take_from_host(Options& options, const LutApplication& host, LutFormat format) {
     const auto is_given = [&](const char* option) { return options.given.contains(option); };
-    if (!is_given("--input") && !is_given("--input-encoding"))
-        options.input =
-            lut_input_of(host, *resolve_operator(options.op, {}, {}, operator_files()).op);
-    if (!is_given("--input-encoding")) options.encoding = host.encoding;
     if (!is_given("--display")) options.display = host.display;
+    if (!is_given("--input-encoding")) {
+        options.encoding = lut_encoding_of(host, format);
+        const bool is_chain = reads_chains(host, format);
+        if (!is_given("--input") && is_chain)
+            options.input = parse_input_encoding(options.encoding).default_input;
+        if (is_chain) return;  // it has sizes of its own
+        if (!is_given("--input"))
+            options.input =
+                lut_input_of(host, *resolve_operator(options.op, {}, {}, operator_files()).op);
+    }
     if (is_given("--format")) return;  // another file than the application's own
     if (is_given("--max-error") && is_strip(host.format)) {
         throw Error(
@@ -71,6 +78,29 @@ void take_from_host(Options& options, const LutApplication& host) {
         return;
     if (!is_given("--size") && !is_given("--max-error") && !options.one) options.size = host.size;
     if (!options.one) options.three = true;
+}
+
+void print_every_color(const std::string& file, const LutError& error) {
+    print_result(fmt::format("{}: on every color of its input: error max {}, 99.9 % {}, mean {}",
+                             file, rounded_up(error.max), rounded_up(error.p999),
+                             rounded_up(error.mean)));
+}
+
+void bake_chain(const Options& options, const LutRequest& request, LutNodes nodes,
+                const LutApplication* host) {
+    const LutChain chain = make_lut_chain(request, nodes);
+    const PhotographError& photographs = chain.error.photographs;
+    if (options.max_error && photographs.p999 > *options.max_error) {
+        throw Error(fmt::format(
+            "bake: max error is {}; expected at least {}, which {} has on "
+            "photographs",
+            shortest(*options.max_error), rounded_up(photographs.p999), chain.operations));
+    }
+    write_text_atomically(options.file, chain.contents);
+    print_result(fmt::format("{}: {}, scene-linear in ({}); on photographs {}", options.file,
+                             chain.operations, request.view.input, to_string(photographs)));
+    print_every_color(options.file, chain.error);
+    if (host) print_result(fmt::format("{}: {}", host->title, host->chain_steps));
 }
 
 void bake_one(Options& options) {
@@ -89,7 +119,7 @@ void bake_one(Options& options) {
     request.format = lut_format_of_file(options.file, format, host);
     if (!options.given.contains("--input"))
         options.input = parse_input_encoding(options.encoding).default_input;
-    if (host) take_from_host(options, *host);
+    if (host) take_from_host(options, *host, request.format);
     request.encoding = parse_input_encoding(options.encoding);
     request.view = options.view();
     request.size = options.size;
@@ -110,6 +140,10 @@ void bake_one(Options& options) {
     if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
     if (const std::string text = stand_in_warning(request.view.op, "LUT"); !text.empty())
         warn(text);
+    if (is_lut_chain(request)) {
+        bake_chain(options, request, nodes, host);
+        return;
+    }
     const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
@@ -128,15 +162,15 @@ void bake_one(Options& options) {
         lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
         error.interpolation, baked.is_fitted ? ", fitted nodes" : "",
         to_string(error.photographs)));
-    print_result(fmt::format("{}: on every color of its input: error max {}, 99.9 % {}, mean {}",
-                             options.file, rounded_up(error.max), rounded_up(error.p999),
-                             rounded_up(error.mean)));
+    print_every_color(options.file, error);
     const std::string clipped = to_string(measure_clipping(request, lut));
     if (!clipped.empty()) {
         print_result(fmt::format("{}: clips what {} would show {}", options.file,
                                  request.view.op.label, clipped));
     }
-    if (host) print_result(fmt::format("{}: {}", host->title, host->steps));
+    if (!host) return;
+    const bool is_chain = request.encoding.is_linear && reads_chains(*host, request.format);
+    print_result(fmt::format("{}: {}", host->title, is_chain ? host->chain_steps : host->steps));
 }
 
 int run_bake(Options& options) {

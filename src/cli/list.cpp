@@ -342,9 +342,16 @@ std::string operator_section(const Operator& op, std::string_view after_characte
 namespace {
 
 std::string format_of(const LutApplication& host) {
+    if (reads_chains(host, host.format)) return name_of(host.format) + " or ctf";
     std::string text = fmt::format("{} {}", name_of(host.format), host.size);
     if (host.bits) text += fmt::format(", {} bit", *host.bits);
     return text;
+}
+
+std::string taken_by(const LutApplication& host) {
+    if (reads_chains(host, host.format)) return "scene-linear Rec.709";
+    return parse_input_encoding(host.encoding).title +
+           (host.takes_any_primaries ? ", of the operator's own primaries" : "");
 }
 
 std::string output_of(const LutApplication& host) {
@@ -356,31 +363,34 @@ void print_hosts() {
     fmt::print("applications (tonewright bake OPERATOR --for APPLICATION -o FILE)\n");
     for (const LutApplication& host : all_lut_applications()) {
         fmt::print(
-            "\n  {}: {}\n      format         {}\n      input          {}{}\n      output         "
+            "\n  {}: {}\n      format         {}\n      input          {}\n      output         "
             "{}\n"
             "      interpolation  {}\n      how to load    {}\n      tested         {}\n",
-            host.id, host.title, format_of(host), parse_input_encoding(host.encoding).title,
-            host.takes_any_primaries ? ", of the operator's own primaries" : "", output_of(host),
-            host.interpolation, host.steps,
+            host.id, host.title, format_of(host), taken_by(host), output_of(host),
+            host.interpolation, lut_steps_of(host, host.format),
             host.tested.empty() ? "the file format, not the application" : host.tested);
+        if (!reads_chains(host, host.format) && reads_chains(host, LutFormat::ctf))
+            fmt::print("      or clf, ctf    {}\n", host.chain_steps);
     }
 }
 
 Json hosts_to_json() {
     Json all = Json::array();
     for (const LutApplication& host : all_lut_applications()) {
-        all.push_back({{"id", host.id},
-                       {"title", host.title},
-                       {"format", name_of(host.format)},
-                       {"size", host.size},
-                       {"bits", host.bits},
-                       {"input_encoding", host.encoding},
-                       {"input", parse_input_encoding(host.encoding).default_input},
-                       {"takes_any_primaries", host.takes_any_primaries},
-                       {"display", host.display},
-                       {"interpolation", host.interpolation},
-                       {"steps", host.steps},
-                       {"tested", host.tested}});
+        all.push_back(
+            {{"id", host.id},
+             {"title", host.title},
+             {"format", name_of(host.format)},
+             {"size", host.size},
+             {"bits", host.bits},
+             {"input_encoding", lut_encoding_of(host, host.format)},
+             {"input", parse_input_encoding(lut_encoding_of(host, host.format)).default_input},
+             {"takes_any_primaries", host.takes_any_primaries},
+             {"display", host.display},
+             {"interpolation", host.interpolation},
+             {"steps", lut_steps_of(host, host.format)},
+             {"chain_steps", host.chain_steps},
+             {"tested", host.tested}});
     }
     return all;
 }

@@ -34,7 +34,9 @@ const std::vector<LutApplication>& all_lut_applications() {
          "tetrahedral",
          "OCIOFileTransform with the file and interpolation tetrahedral, after a conversion to "
          "ACEScct",
-         ""},
+         "",
+         false,
+         "OCIOFileTransform with the file, on scene-linear Rec.709; no conversion before it"},
         {"ffmpeg",
          "ffmpeg",
          LutFormat::cube,
@@ -188,10 +190,10 @@ const std::vector<LutApplication>& all_lut_applications() {
          {},
          "tetrahedral",
          "FileTransform with the file and interpolation tetrahedral, after a conversion to "
-         "ACEScct; the config "
-         "has "
-         "no such step",
-         "OpenColorIO 2.1.2"},
+         "ACEScct; the config has no such step",
+         "OpenColorIO 2.1.2",
+         false,
+         "FileTransform with the file, on scene-linear Rec.709; no conversion before it"},
         {"threejs",
          "three.js",
          LutFormat::cube,
@@ -217,6 +219,19 @@ const LutApplication& find_lut_application(std::string_view id) {
     }
     throw Error("bake: application is " + std::string(id) + "; expected " + join_choices(ids) +
                 did_you_mean(id, choices));
+}
+
+bool reads_chains(const LutApplication& application, LutFormat format) {
+    return !application.chain_steps.empty() &&
+           (format == LutFormat::clf || format == LutFormat::ctf);
+}
+
+std::string lut_encoding_of(const LutApplication& application, LutFormat format) {
+    return reads_chains(application, format) ? "linear" : application.encoding;
+}
+
+const std::string& lut_steps_of(const LutApplication& application, LutFormat format) {
+    return reads_chains(application, format) ? application.chain_steps : application.steps;
 }
 
 std::string lut_input_of(const LutApplication& application, const Operator& op) {

@@ -54,7 +54,13 @@ std::vector<std::string> known_extensions() {
 LutFormat lut_format_of_file(const std::string& path, std::optional<LutFormat> format,
                              const LutApplication* application) {
     const std::string extension = extension_of(path);
-    if (!format && application) format = application->format;
+    if (!format && application) {
+        format = application->format;
+        for (const LutFormat chain : {LutFormat::clf, LutFormat::ctf}) {
+            if (reads_chains(*application, chain) && has(extensions_of(chain), extension))
+                format = chain;
+        }
+    }
     if (format) {
         const std::vector<std::string>& own = extensions_of(*format);
         // Readers of LUTs recognize formats by the extension, so the file needs the right one.

@@ -9,6 +9,7 @@
 #include "lut/display_code.h"
 #include "lut/half_domain.h"
 #include "lut/node_weights.h"
+#include "lut/photograph_error.h"
 #include "lut/shaper.h"
 #include "lut/table_input.h"
 #include "measure/error_metric.h"
@@ -186,17 +187,15 @@ double percentile_of(const std::vector<double>& errors, const std::vector<double
     return errors.empty() ? 0 : errors[order.back()];
 }
 
-PhotographError measure_photographs(const Comparison& comparison, const LutRequest& request,
-                                    bool lut_is_unbounded) {
+}  // namespace
+
+PhotographError photograph_error(const View& view, std::vector<double> shown,
+                                 std::vector<double> wanted, double brightest_held) {
     constexpr double kWithin = 0.999;
     constexpr double kCode = 1.0 / 255;
     const PhotographColors& colors = photograph_colors();
-    const std::vector<float> light =
-        photograph_light(find_input_space(request.view.input).primaries);
-    std::vector<double> shown;
-    std::vector<double> wanted;
-    (void)comparison.errors(light, shown, wanted);
-    const DisplayCode code(request.view);
+    const std::vector<float> light = photograph_light(find_input_space(view.input).primaries);
+    const DisplayCode code(view);
     code.encode(shown);
     code.encode(wanted);
     PhotographError error;
@@ -206,8 +205,7 @@ PhotographError measure_photographs(const Comparison& comparison, const LutReque
     for (std::size_t i = 0; i < shown.size(); i += 3) {
         const double share = colors.share[i / 3];
         const float brightest = *std::max_element(&light[i], &light[i] + 3);
-        const bool is_inside =
-            lut_is_unbounded || static_cast<double>(brightest) <= request.encoding.scene_hi;
+        const bool is_inside = static_cast<double>(brightest) <= brightest_held;
         double worst = 0;
         for (std::size_t c = 0; is_inside && c < 3; ++c)
             worst = std::max(worst, std::fabs(shown[i + c] - wanted[i + c]));
@@ -217,7 +215,8 @@ PhotographError measure_photographs(const Comparison& comparison, const LutReque
         error.mean += shares.back() * worst;
         if (worst > kCode) error.share += share;
     }
-    error.outside = 1 - inside;
+    constexpr double kRounding = 1e-12;
+    error.outside = 1 - inside > kRounding ? 1 - inside : 0;
     if (!(inside > 0)) return error;
     error.mean /= inside;
     error.share /= inside;
@@ -233,8 +232,6 @@ PhotographError measure_photographs(const Comparison& comparison, const LutReque
     }
     return error;
 }
-
-}  // namespace
 
 Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear) {
     Vector3 out{};
@@ -327,7 +324,9 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
         result.delta_e_p999 = seen.p999;
         result.delta_e_mean = seen.mean;
     }
-    result.photographs = measure_photographs(comparison, request, lut.is_half_domain);
+    (void)comparison.errors(photograph_light(space.primaries), shown, wanted);
+    result.photographs = photograph_error(
+        request.view, shown, wanted, lut.is_half_domain ? kInfinity : request.encoding.scene_hi);
     return result;
 }
 

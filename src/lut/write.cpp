@@ -8,132 +8,13 @@
 #include "base/little_endian.h"
 #include "base/strings.h"
 #include "lut/clf.h"
+#include "lut/header.h"
 #include "lut/icc.h"
 #include "lut/shaper.h"
-#include "measure/error_metric.h"
 #include "tonewright/lut.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-std::string title_of(const LutRequest& r) {
-    return fmt::format("{} ({}), {} to {}", r.view.op.op->title, r.view.op.label, r.encoding.id,
-                       r.view.display);
-}
-
-/// Error of the LUT for one interpolation.
-void add_error_lines(std::vector<std::string>& lines, const LutError& e) {
-    lines.push_back(fmt::format(
-        "Error against the double-precision operator, {} interpolation, inside the "
-        "input range: max {}, 99.9 % {}, mean {}",
-        e.interpolation, three_digits_up(e.max), three_digits_up(e.p999), three_digits_up(e.mean)));
-    if (e.delta_e_max > 0) {
-        lines.push_back(fmt::format(
-            "Color difference dE_ITP (ITU-R BT.2124), {} interpolation: max {}, 99.9 % {}, mean {}",
-            e.interpolation, three_digits_up(e.delta_e_max), three_digits_up(e.delta_e_p999),
-            three_digits_up(e.delta_e_mean)));
-    }
-}
-
-/// Two digits, rounded up: "0.05", "6.2", "41".
-std::string two_digits_up(double value) {
-    if (!(value > 0)) return "0";
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-    return fmt::format("{:.3g}", std::ceil(value / unit - 1e-9) * unit);
-}
-
-}  // namespace
-
-std::string to_string(const PhotographError& error) {
-    constexpr double kCodes = 255;
-    std::string text =
-        fmt::format("99.9 % within {} codes of 255, mean {}", two_digits_up(kCodes * error.p999),
-                    two_digits_up(kCodes * error.mean));
-    const auto percent = [](double share) {
-        return 100 * share < 0.01 ? "less than 0.01" : two_digits_up(100 * share);
-    };
-    text += error.share > 0 ? fmt::format(", {} % of the pixels more than one off, most at {}",
-                                          percent(error.share), error.worst)
-                            : ", no pixel more than one off";
-    if (error.outside > 0)
-        text += fmt::format("; {} % are brighter than the input holds", percent(error.outside));
-    return text;
-}
-
-namespace {
-
-/// Hash of the numbers, not of the file.
-std::string hash_of(const Lut& lut) { return content_hash(little_endian_bytes(lut.values)); }
-
-/// Operator, input, output and error of the LUT.
-std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const LutError& e,
-                                      const std::optional<LutError>& other,
-                                      const std::optional<LutRinging>& ringing) {
-    const Operator& op = *r.view.op.op;
-    std::vector<std::string> lines;
-    lines.push_back("Tonewright: " + op.title + ", " + r.view.op.label +
-                    (r.view.exposure_stops != 0
-                         ? ", exposure " + shortest(r.view.exposure_stops) + " stops"
-                         : ""));
-    lines.push_back("Source: " + op.source);
-    if (has_shaper(r.format)) {
-        lines.push_back(fmt::format(
-            "Input: scene-linear {}, {:.6g} to {:.6g} ({:+.2f} stops from 0.18); the 1D LUT before "
-            "the 3D LUT encodes it as {}",
-            find_input_space(r.view.input).title, r.encoding.scene_lo, r.encoding.scene_hi,
-            std::log2(r.encoding.scene_hi / 0.18), r.encoding.title));
-    } else if (lut.is_half_domain) {
-        lines.push_back("Input: scene-linear " + find_input_space(r.view.input).title +
-                        ", every half float (half-domain table)");
-    } else {
-        lines.push_back(fmt::format("Input: {}, of scene-linear {}", r.encoding.title,
-                                    find_input_space(r.view.input).title));
-        lines.push_back(fmt::format(
-            "Input 0 is scene-linear {:.6g}, 1 is {:.6g} ({:+.2f} stops from 0.18)",
-            r.encoding.scene_lo, r.encoding.scene_hi, std::log2(r.encoding.scene_hi / 0.18)));
-    }
-    if (!lut.is_half_domain) {
-        const std::string clipped = to_string(measure_clipping(r, lut));
-        lines.push_back(clipped.empty() ? "Clips nothing visible (within one 10-bit code value)"
-                                        : "Clips visible values " + clipped);
-    }
-    // The operator's own code values may equal those of a display.
-    const std::string display =
-        r.view.display == kNativeOutput && !r.view.op.output_display().empty()
-            ? r.view.op.output_display()
-            : r.view.display;
-    if (display == kNativeOutput) {
-        lines.push_back(
-            r.view.op.output() == OutputKind::code_value
-                ? fmt::format("Output: the operator's own code values, power {}", op.code_power)
-                : "Output: the operator's own display-linear values");
-    } else if (display == kLinearOutput) {
-        lines.push_back("Output: display-linear Rec.709, unclamped");
-    } else {
-        const Display& shown = find_display(display);
-        lines.push_back("Output: " + shown.title + " code values (" + shown.source + ")");
-    }
-    lines.push_back(fmt::format("On photographs and renders, {} interpolation: {}", e.interpolation,
-                                to_string(e.photographs)));
-    add_error_lines(lines, e);
-    if (other) add_error_lines(lines, *other);
-    lines.emplace_back(
-        lut.dimension == 3
-            ? "The maximum is of all colors of the input range; 99.9 % and mean are of the "
-              "samples: grays, grids of Rec.709, Rec.2020 and AP1 at five exposures, random colors"
-            : "All three are of the samples: grays, grids of Rec.709, Rec.2020 and AP1 at five "
-              "exposures, random colors");
-    if (ringing) {
-        lines.push_back(fmt::format(
-            "{}, {} interpolation, along rising exposure of the test chart's lamps and hues: {}; "
-            "99.9 % of the errors up to {}",
-            rings(*ringing) ? "RINGS" : "Does not ring", e.interpolation, to_string(*ringing),
-            three_digits_up(ringing->p999)));
-    }
-    lines.push_back(fmt::format("{}, size {}, numbers {}", lut.dimension == 3 ? "3D LUT" : "1D LUT",
-                                lut.size, hash_of(lut)));
-    return lines;
-}
 
 using Lines = std::vector<std::string>;
 
@@ -155,7 +36,7 @@ std::string triplets(const Lut& lut) {
 }
 
 std::string write_cube(const Lut& lut, const LutRequest& r, const Lines& header) {
-    std::string text = "TITLE \"" + title_of(r) + "\"\n";
+    std::string text = "TITLE \"" + lut_title(r) + "\"\n";
     for (const std::string& line : header)
         text += "# " + line + "\n";
     if (lut.dimension == 3) {
@@ -227,7 +108,7 @@ std::vector<float> blue_fastest(const Lut& lut) {
 /// of few points at equal scene-linear distances, so this one has 4096 points at equal distances in
 /// the code.
 std::string write_csp(const Lut& lut, const LutRequest& r, const Lines& header) {
-    std::string text = "CSPLUTV100\n3D\n\nBEGIN METADATA\n" + title_of(r) + "\n";
+    std::string text = "CSPLUTV100\n3D\n\nBEGIN METADATA\n" + lut_title(r) + "\n";
     for (const std::string& line : header)
         text += line + "\n";
     text += "END METADATA\n\n";
@@ -317,7 +198,7 @@ std::string write_clf_file(const Lut& lut, const LutRequest& r, const Lines& hea
     table.is_ctf = r.format == LutFormat::ctf;
     table.input_descriptor = described(header, "Input: ");
     table.output_descriptor = described(header, "Output: ");
-    return write_clf(table, title_of(r), header);
+    return write_clf(table, lut_title(r), header);
 }
 
 }  // namespace
@@ -325,7 +206,7 @@ std::string write_clf_file(const Lut& lut, const LutRequest& r, const Lines& hea
 std::string write_lut(const Lut& lut, const LutRequest& request, const LutError& error,
                       const std::optional<LutError>& other_error,
                       const std::optional<LutRinging>& ringing) {
-    const auto header = [&] { return header_lines(lut, request, error, other_error, ringing); };
+    const auto header = [&] { return lut_header(lut, request, error, other_error, ringing); };
     switch (request.format) {
         case LutFormat::cube:
             return write_cube(lut, request, header());
@@ -345,7 +226,7 @@ std::string write_lut(const Lut& lut, const LutRequest& request, const LutError&
         case LutFormat::houdini:
             return write_houdini(lut);
         case LutFormat::icc:
-            return write_icc(blue_fastest(lut), lut.size, request.icc_version, title_of(request),
+            return write_icc(blue_fastest(lut), lut.size, request.icc_version, lut_title(request),
                              header());
         case LutFormat::raw:
             return write_raw(lut);

@@ -28,6 +28,7 @@
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
 #include "lut/lut_warnings.h"
+#include "ocio/lut_chain.h"
 #include "pipeline/stand_ins.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
@@ -388,9 +389,9 @@ py::dict describe(const LutApplication& application) {
     d["title"] = application.title;
     d["format"] = name_of(application.format);
     d["size"] = application.size;
-    d["input_encoding"] = application.encoding;
+    d["input_encoding"] = lut_encoding_of(application, application.format);
     d["display"] = application.display;
-    d["steps"] = application.steps;
+    d["steps"] = lut_steps_of(application, application.format);
     return d;
 }
 
@@ -420,12 +421,13 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     if (const std::string why = why_no_file(file); !why.empty())
         throw FileError(fmt::format("write: {}: {}", file, why));
     request.format = lut_format_of_file(file, named, reader);
-    request.encoding =
-        parse_input_encoding(input_encoding.value_or(reader ? reader->encoding : "acescct"));
+    const std::string own_encoding = reader ? lut_encoding_of(*reader, request.format) : "acescct";
+    request.encoding = parse_input_encoding(input_encoding.value_or(own_encoding));
     const bool is_own_encoding = reader && !input_encoding;
+    const bool is_chain = is_own_encoding && reads_chains(*reader, request.format);
     if (is_same_name(options.input, kAutoInput)) {
         options.input =
-            is_own_encoding
+            is_own_encoding && !is_chain
                 ? lut_input_of(*reader, *resolve_operator(options.op, {}, {}, options.others).op)
                 : request.encoding.default_input;
     }
@@ -433,7 +435,7 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     request.view =
         make_view(resolve_operator(options.op, options.settings, options.look, options.others),
                   options.input, options.exposure_stops, options.display, options.reference_white);
-    if (reader && !format) {
+    if (reader && !format && !is_chain) {
         request.bits = reader->bits;
         // As `bake` does: one curve for each channel is exact as a 1D table.
         if (!reader->takes_any_primaries || !is_per_channel(build_view(request.view))) {
@@ -445,11 +447,23 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     if (depth) request.bits = depth;
     if (const std::string text = stand_in_warning(request.view.op, "LUT"); !text.empty())
         warn(text);
-    BakedLut baked;
+    py::dict result;
+    LutError error;
+    std::string operations;
     with_memory_for(file, [&] {
         const py::gil_scoped_release release;
-        baked = bake_lut(request, LutNodes::automatic, reader && is_trilinear(*reader));
+        if (is_lut_chain(request)) {
+            const LutChain chain = make_lut_chain(request, LutNodes::automatic);
+            write_text_atomically(file, chain.contents);
+            error = chain.error;
+            operations = chain.operations;
+            return;
+        }
+        const BakedLut baked =
+            bake_lut(request, LutNodes::automatic, reader && is_trilinear(*reader));
+        error = baked.error;
         request.size = baked.lut.size;
+        request.dimension = baked.lut.dimension == 3 ? LutDimension::three : LutDimension::one;
         if (const std::string text = lut_warning(file, request, baked, is_own_encoding);
             !text.empty())
             warn(text);
@@ -463,18 +477,22 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
             write_text_atomically(file, write_lut(baked, request));
         }
     });
-    py::dict result;
-    result["dimension"] = baked.lut.dimension;
-    result["size"] = baked.lut.size;
+    // A chain of operations has no one size.
+    if (operations.empty()) {
+        result["dimension"] = request.dimension == LutDimension::three ? 3 : 1;
+        result["size"] = *request.size;
+    } else {
+        result["operations"] = operations;
+    }
     result["photographs"] = py::dict();
-    const PhotographError& photographs = baked.error.photographs;
+    const PhotographError& photographs = error.photographs;
     result["photographs"]["p999"] = photographs.p999;
     result["photographs"]["mean"] = photographs.mean;
     result["photographs"]["above_one_code"] = photographs.share;
     result["photographs"]["outside"] = photographs.outside;
-    result["max_error"] = baked.error.max;
-    result["mean_error"] = baked.error.mean;
-    result["interpolation"] = baked.error.interpolation;
+    result["max_error"] = error.max;
+    result["mean_error"] = error.mean;
+    result["interpolation"] = error.interpolation;
     return result;
 }
 

@@ -53,7 +53,7 @@ def through_ocio(path, rgb):
     config = ocio.Config.CreateRaw()
     config.setProcessorCacheFlags(ocio.PROCESSOR_CACHE_OFF)
     transform = ocio.FileTransform(str(path), interpolation=ocio.INTERP_TETRAHEDRAL)
-    image = np.ascontiguousarray(rgb, np.float32)
+    image = np.array(rgb, np.float32, order="C")  # applyRGB() writes into it
     config.getProcessor(transform).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
     return image
 
@@ -78,6 +78,9 @@ def expected_of(command, codes, encoding, display, own_space=None):
 def check_host(report, command, host, folder):
     if host["format"] == "icc":
         return  # clients/test_tificc.py
+    if host["input_encoding"] == "linear":
+        check_chains(report, command, host["id"], folder)
+        return
     is_picture = host["format"] in ("hald", "strip", "strip_up")
     path = folder / f"{host['id']}.{'png' if is_picture else host['format']}"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--for", host["id"], "-o", path)
@@ -109,6 +112,41 @@ def check_host(report, command, host, folder):
         report.check(f"{host['id']}: the file is what Adobe's specification says",
                      words == ["TITLE", "LUT_3D_SIZE", "DOMAIN_MIN", "DOMAIN_MAX"] and len(numbers) == size ** 3
                      and all("e" not in n for n in numbers) and len(lines[0]) < 250, words)
+
+
+def scene_colors():
+    """Scene-linear Rec.709: grays and saturated colors of -10 to 10 stops, black, white lights, negatives."""
+    rng = np.random.default_rng(3)
+    light = 0.18 * 2 ** rng.uniform(-10, 10, (4000, 3))
+    gray = np.repeat(0.18 * 2 ** np.linspace(-10, 10, 200)[:, None], 3, axis=1)
+    lamps = np.vstack([np.eye(3), 1 - np.eye(3)])[:, None, :] * 2.0 ** np.arange(-4, 11)[None, :, None]
+    return np.vstack([light, gray, lamps.reshape(-1, 3), np.zeros((1, 3)), -lamps.reshape(-1, 3) / 100]).astype(np.float32)
+
+
+# operator, format, largest error and 99.9 % that a chain may have: float32 and half floats for all but what has a sampled
+# 3D LUT. ACES 2.0's ends at 1024 and its cells are a few codes wide there; its 99.9 % is half a code.
+CHAINS = (("agx_blender", "clf", 1e-5, 1e-5), ("agx_sobotka", "clf", 1e-5, 1e-5), ("hable", "clf", 1e-5, 1e-6),
+          ("khronos_neutral", "ctf", 2e-5, 2e-5), ("reinhard_extended:luminance", "ctf", 5e-5, 5e-5), ("aces_13", "ctf", 1e-5, 5e-6),
+          ("aces_20", "ctf", 1e-2, 4e-3))
+
+
+def check_chains(report, command, host, folder):
+    """clf and ctf files of scene-linear input have every operation of the view, so they are nearly exact."""
+    colors = scene_colors()
+    for op, form, largest, most in CHAINS:
+        path = folder / f"{op.replace(chr(58), chr(95))}.{form}"
+        run(command, "bake", op, "--for", host, "-o", path)
+        errors = np.abs(through_ocio(path, colors) - evaluate(command, colors, op)).max(axis=1)
+        report.check(f"{host}: {op} as {form} of scene-linear input: largest error {errors.max():.1g}, 99.9 % {np.percentile(errors, 99.9):.1g}",
+                     errors.max() <= largest and np.percentile(errors, 99.9) <= most, errors.max())
+        head = path.read_text(errors="replace")[:3000]
+        report.check(f"{op}: the header says what it takes", "Input: scene-linear Linear Rec.709" in head, head)
+    # `eval --lut` follows the header, and another space has a matrix.
+    ap1 = folder / "ap1.clf"
+    run(command, "bake", "agx_blender", "--format", "clf", "--input-encoding", "linear", "--input", "lin_ap1", "-o", ap1)
+    report.compare("agx_blender of AP1", through_ocio(ap1, colors), evaluate(command, colors, "agx_blender", "--input", "lin_ap1"), 1e-5)
+    report.compare("eval --lut of it", evaluate(command, colors[::40], "--lut", ap1),
+                   evaluate(command, colors[::40], "agx_blender"), 1e-5)
 
 
 def check_formats(report, command, folder):

@@ -29,6 +29,9 @@ struct LutApplication {
     /// The application can convert light to any primaries before the LUT. LUTs for it use the
     /// operator's own primaries: a clip then falls on the sides of the grid, not through its cells.
     bool takes_any_primaries = false;
+    /// Instructions for a clf or ctf file of scene-linear input. Empty: the application does not
+    /// read chains of operations.
+    std::string chain_steps = {};
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<LutApplication>& all_lut_applications();
 /// @throws Error with the nearest name.
@@ -38,6 +41,16 @@ struct LutApplication {
 /// primaries if the application can convert to it, else that of the encoding.
 [[nodiscard]] TONEWRIGHT_API std::string lut_input_of(const LutApplication& application,
                                                       const Operator& op);
+
+/// True if the application reads clf and ctf files as chains of operations on scene-linear input,
+/// and the format is one of them.
+[[nodiscard]] TONEWRIGHT_API bool reads_chains(const LutApplication& application, LutFormat format);
+/// The encoding of the input of a LUT in this format for the application: `linear` for chains.
+[[nodiscard]] TONEWRIGHT_API std::string lut_encoding_of(const LutApplication& application,
+                                                         LutFormat format);
+/// Instructions for a LUT in this format.
+[[nodiscard]] TONEWRIGHT_API const std::string& lut_steps_of(const LutApplication& application,
+                                                             LutFormat format);
 
 /// The format of a LUT file: `format`, else the application's, else that of the file's extension.
 /// @param application  null: none

@@ -230,8 +230,8 @@ def bake(op: str, file: Path, *, host: str = "", format: str | None = None, inpu
     host: id of the application that reads it, see applications(); sets format, size, input and display.
     format, input_encoding, size, depth: as the options of `tonewright bake`.
 
-    The result has dimension, size, interpolation, max_error and mean_error (of every color of the input, code values), and
-    photographs: p999 and mean (99.9 % and mean of the pixels of photographs, code values), above_one_code (share of the
+    The result has dimension and size, or operations (of a clf or ctf of scene-linear input), interpolation, max_error and
+    mean_error (of every color of the input, code values), and photographs: p999 and mean (99.9 % and mean of the pixels of photographs, code values), above_one_code (share of the
     pixels with an error above 1/255) and outside (share that is brighter than the input holds).
 
     Example: tonewright.bake("agx_blender", "agx.cube", host="resolve")

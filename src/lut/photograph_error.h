@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "tonewright/lut.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Error on the colors of photograph_light() in the view's input primaries.
+/// @param shown           output of the LUT, interleaved RGB
+/// @param wanted          output of the reference
+/// @param brightest_held  brighter light is left out
+[[nodiscard]] TONEWRIGHT_API PhotographError photograph_error(const View& view,
+                                                              std::vector<double> shown,
+                                                              std::vector<double> wanted,
+                                                              double brightest_held);
+
+TONEWRIGHT_NAMESPACE_END

@@ -8,6 +8,7 @@
 #include "base/format_number.h"
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "cli/exact_forms.h"
 #include "cli/messages.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
@@ -38,6 +39,7 @@ struct Options : ViewOptions {
     std::string nodes = "auto";
     std::string host;
     std::string all;
+    bool exact = false;
 };
 
 /// @throws Error  a file type that cannot store the numbers exactly: lossy, or of other depths
@@ -70,6 +72,10 @@ void take_from_host(Options& options, const LutApplication& host, LutFormat form
         throw Error(
             fmt::format("bake: --max-error is given for {}; expected none, because its size is {}",
                         host.id, host.size));
+    }
+    if (options.size && *options.size > host.largest_size) {
+        throw Error(fmt::format("bake: size is {}; expected at most {} for {}", *options.size,
+                                host.largest_size, host.id));
     }
     if (!is_given("--depth")) options.bits = host.bits;
     // A view of one curve for each channel is exact as a 1D table, if the application can convert
@@ -145,11 +151,15 @@ void bake_one(Options& options) {
         return;
     }
     const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
+    // The application's own input: nothing of it can be changed.
+    const LutApplication* own_host =
+        host && !options.given.contains("--input") && !options.given.contains("--input-encoding")
+            ? host
+            : nullptr;
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
     request.size = lut.size;
-    if (const std::string text = lut_warning(options.file, request, baked, host != nullptr);
-        !text.empty())
+    if (const std::string text = lut_warning(options.file, request, baked, own_host); !text.empty())
         warn(text);
     if (is_picture) {
         picture_commands().write_lut(lut, request.format, options.file, request.bits.value_or(16));
@@ -170,10 +180,26 @@ void bake_one(Options& options) {
     }
     if (!host) return;
     const bool is_chain = request.encoding.is_linear && reads_chains(*host, request.format);
-    print_result(fmt::format("{}: {}", host->title, is_chain ? host->chain_steps : host->steps));
+    const std::string& steps = is_chain ? host->chain_steps : host->steps;
+    if (is_chain || own_host) {
+        print_result(fmt::format("{}: {}", host->title, steps));
+    } else {
+        print_result(fmt::format(
+            "{}: convert scene-linear {} to {} before this file, which does "
+            "not take the application's usual input",
+            host->title, find_input_space(request.view.input).title, request.encoding.title));
+    }
 }
 
 int run_bake(Options& options) {
+    if (options.exact) {
+        if (options.op.empty()) throw Error("bake: OPERATOR is missing; expected one with --exact");
+        if (!options.file.empty() || !options.all.empty())
+            throw Error("bake: --exact writes no file; expected no -o and no --all with it");
+        print_exact_forms(options,
+                          options.host.empty() ? nullptr : &find_lut_application(options.host));
+        return kOk;
+    }
     if (options.all.empty()) {
         with_memory_for(options.file, [&] { bake_one(options); });
         return kOk;
@@ -210,6 +236,10 @@ void add_bake(CommandLine& program) {
     command
         .add("--all", options->all, "write the shipped LUTs; with --for, those of one application")
         .value("FOLDER")
+        .group(output);
+    command
+        .add_flag("--exact", options->exact,
+                  "write nothing; list the most exact files for each application, or that of --for")
         .group(output);
     add_view_options(command, *options);
     command.add("--input-encoding", options->encoding, "encoding of the LUT's input; see below")
@@ -272,6 +302,7 @@ void add_bake(CommandLine& program) {
         "Sizes: 17..129; 3dl 17, 33 or 65; hald a square of 16..144 (default 64); strip 2..64 "
         "(default 32); raw 2..129.\n"
         "Examples:\n"
+        "  tonewright bake agx_blender --exact --for resolve\n"
         "  tonewright bake agx_blender --for resolve -o agx.cube\n"
         "  tonewright bake agx_sobotka --size 33 --input-encoding acescct -o agx.cube");
     command.action([options, command] {

@@ -351,7 +351,7 @@ std::string format_of(const LutApplication& host) {
 std::string taken_by(const LutApplication& host) {
     if (reads_chains(host, host.format)) return "scene-linear Rec.709";
     return parse_input_encoding(host.encoding).title +
-           (host.takes_any_primaries ? ", of the operator's own primaries" : "");
+           (host.takes_any_primaries ? ", of Rec.709 or Rec.2020, by the operator" : "");
 }
 
 std::string output_of(const LutApplication& host) {

@@ -12,7 +12,7 @@ const std::vector<LutApplication>& all_lut_applications() {
         {"resolve",
          "DaVinci Resolve",
          LutFormat::cube,
-         33,
+         65,
          "davinci",
          "rec1886",
          {},
@@ -23,11 +23,13 @@ const std::vector<LutApplication>& all_lut_applications() {
          "file's primaries as output color space, DaVinci Intermediate as output gamma, tone "
          "mapping None, gamut mapping None; then LUTs, the file",
          "",
-         true},
+         true,
+         "",
+         65},  // of 17, 33 and 65, the sizes that it writes
         {"nuke",
          "Nuke",
          LutFormat::cube,
-         33,
+         65,
          "acescct",
          "srgb",
          {},
@@ -40,7 +42,7 @@ const std::vector<LutApplication>& all_lut_applications() {
         {"ffmpeg",
          "ffmpeg",
          LutFormat::cube,
-         33,
+         65,
          "pq",
          "rec1886",
          {},
@@ -53,11 +55,14 @@ const std::vector<LutApplication>& all_lut_applications() {
          "sidedata=delete,format=yuv420p -color_primaries bt709 -color_trc bt709 -colorspace bt709 "
          "-c:a copy out.mkv: HDR10 (PQ, Rec.2020) in, BT.709 out, 4:2:0 of 8 bits; yuv420p10le for "
          "10",
-         "ffmpeg 5.1"},
+         "ffmpeg 5.1",
+         false,
+         "",
+         128},  // libavfilter/vf_lut3d.c refuses more
         {"premiere",
          "Premiere Pro",
          LutFormat::cube,
-         33,
+         65,
          "logc3",
          "rec1886",
          {},
@@ -125,7 +130,7 @@ const std::vector<LutApplication>& all_lut_applications() {
         {"mpv",
          "mpv",
          LutFormat::cube,
-         33,
+         65,
          "pq",
          "srgb",
          {},
@@ -235,12 +240,12 @@ const std::string& lut_steps_of(const LutApplication& application, LutFormat for
 }
 
 std::string lut_input_of(const LutApplication& application, const Operator& op) {
-    if (application.takes_any_primaries) {
-        for (const InputSpace& space : all_input_spaces()) {
-            if (space.primaries == op.working) return space.id;
-        }
-    }
-    return parse_input_encoding(application.encoding).default_input;
+    if (!application.takes_any_primaries)
+        return parse_input_encoding(application.encoding).default_input;
+    // In Rec.709, an operator of Rec.709 clips on the sides of the grid. The others take Rec.2020,
+    // which holds the colors of displays and nearly all of cameras: cells of AP1 and AP0 are wider
+    // (docs/luts.md has the errors).
+    return op.working == kRec709 ? "lin_rec709" : "lin_rec2020";
 }
 
 TONEWRIGHT_NAMESPACE_END

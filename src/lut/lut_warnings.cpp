@@ -5,35 +5,51 @@
 
 #include <cmath>
 
-#include "measure/error_metric.h"
-
 TONEWRIGHT_NAMESPACE_BEGIN
 
-std::string lut_warning(const std::string& file, const LutRequest& request, const BakedLut& baked,
-                        bool is_for_application) {
-    if (baked.lut.dimension != 3) return {};
-    std::string remedy;
-    const Operator& op = *request.view.op.op;
-    for (const InputSpace& space : all_input_spaces()) {
-        // An application has primaries of its own.
-        if (!is_for_application && space.primaries == op.working && space.id != request.view.input)
-            remedy = fmt::format("; use the operator's own primaries: --input {}", space.id);
+namespace {
+
+/// What the user can change: nothing that the application fixes.
+std::string remedy(const LutRequest& request, const BakedLut& baked, const LutApplication* host) {
+    const View& view = request.view;
+    if (!host) {
+        for (const InputSpace& space : all_input_spaces()) {
+            if (space.primaries == view.op.op->working && space.id != view.input)
+                return "take input of the operator's own primaries: --input " + space.id;
+        }
     }
-    if (remedy.empty() && baked.lut.size < 65 && !is_picture_format(request.format))
-        remedy = "; use more nodes: --size 65";
+    if (host && reads_chains(*host, LutFormat::clf) && !reads_chains(*host, request.format))
+        return "a clf or ctf file has no such errors: -o NAME.ctf";
+    // Pictures of LUTs have the sizes that their application wants.
+    if (baked.lut.size < 65 && !is_picture_format(request.format) &&
+        (!host || host->largest_size >= 65))
+        return "take more nodes: --size 65";
+    return {};
+}
+
+}  // namespace
+
+std::string lut_warning(const std::string& file, const LutRequest& request, const BakedLut& baked,
+                        const LutApplication* host) {
+    if (baked.lut.dimension != 3) return {};
+    constexpr double kCodes = 255;
+    const std::string help = remedy(request, baked, host);
+    if (help.empty()) return {};
     const LutRinging& ringing = baked.ringing;
     if (rings(ringing)) {
         return fmt::format(
-            "{} rings: along rising exposure, {}, where {} does not; errors there up to {} (99.9 "
-            "%), because clips and kinks of the operator lie between its nodes{}",
-            file, to_string(ringing), request.view.op.label, rounded_up(ringing.p999), remedy);
+            "{} rings: in {}, {} is {:.0f} codes of 255 too dark at {:+.1f} stops "
+            "from 0.18; {}",
+            file, ringing.color, ringing.channel, std::ceil(kCodes * ringing.fall), ringing.stops,
+            help);
     }
     constexpr double kManyPixels = 0.05;
     const double share = baked.error.photographs.share;
-    if (remedy.empty() || share <= kManyPixels) return {};
+    if (share <= kManyPixels) return {};
     return fmt::format(
-        "{} is more than one code of 255 off on {:.0f} % of the pixels of photographs{}", file,
-        std::ceil(100 * share), remedy);
+        "{} is more than one code of 255 off on {:.0f} % of the pixels of "
+        "photographs; {}",
+        file, std::ceil(100 * share), help);
 }
 
 TONEWRIGHT_NAMESPACE_END

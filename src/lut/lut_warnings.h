@@ -3,16 +3,16 @@
 
 #include <string>
 
-#include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// One line: a 3D LUT rings, or is a code off on more than a twentieth of photographs; and the
-/// remedy. Empty if neither, or for photographs if nothing helps.
-/// @param is_for_application  the input is that of an application
+/// One line: a 3D LUT rings, or is a code off on more than a twentieth of photographs; and what
+/// helps. Empty if neither, or if nothing helps.
+/// @param host  the application whose input the LUT takes; null: none
 [[nodiscard]] TONEWRIGHT_API std::string lut_warning(const std::string& file,
                                                      const LutRequest& request,
                                                      const BakedLut& baked,
-                                                     bool is_for_application);
+                                                     const LutApplication* host);
 
 TONEWRIGHT_NAMESPACE_END

@@ -38,10 +38,9 @@ ShippedLut plan(const LutPresetSet& set, const std::string& id) {
         make_view(resolve_operator(id), lut_input_of(host, find_operator(id)), 0, host.display);
     request.format = host.format;
     if (!host.takes_any_primaries || !is_per_channel(build_view(request.view))) {
-        const auto larger = set.larger_sizes.find(id);
+        const auto own = set.sizes.find(id);
         request.dimension = LutDimension::three;
-        request.size =
-            larger == set.larger_sizes.end() ? set.size.value_or(host.size) : larger->second;
+        request.size = own == set.sizes.end() ? set.size.value_or(host.size) : own->second;
     }
     request.bits = host.bits;
     if (host.format == LutFormat::cube) request.decimals = kDecimals;
@@ -170,6 +169,14 @@ std::string markdown_steps(const std::string& steps) {
     return "`" + command + "`" + steps.substr(command.size());
 }
 
+std::string lamps_of(const LutRinging& ringing) {
+    constexpr double kCodes = 255;
+    if (rings(ringing))
+        return fmt::format("ring of {:.0f} codes", std::ceil(kCodes * ringing.fall));
+    if (follows_operator(ringing)) return "follow";
+    return fmt::format("99.9 % within {:.0f}", std::ceil(kCodes * ringing.p999));
+}
+
 std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts) {
     const LutApplication& host = *set.host;
     std::string text = fmt::format("\n<a id=\"{}\"></a>\n## {}\n\n", host.id, host.title);
@@ -189,8 +196,8 @@ std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts
                 "--size where the file has entries; {} interpolation, {:+.1f} stops from 0.18 at "
                 "input 1.\n\n"
                 "| operator | file | size | input | output | photographs: 99.9 % | mean | above "
-                "one code | every color: 99.9 % | picture |\n|---|---|---|---|---|---|---|---|---|"
-                "---|\n",
+                "one code | lamps | every color: 99.9 % | picture |\n"
+                "|---|---|---|---|---|---|---|---|---|---|---|\n",
                 host.id, r.decimals ? fmt::format(" --decimals {}", *r.decimals) : "",
                 is_trilinear(host) ? "trilinear" : "tetrahedral",
                 std::log2(r.encoding.scene_hi / 0.18));
@@ -198,41 +205,42 @@ std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts
         is_first = false;
         constexpr double kCodes = 255;
         text += fmt::format(
-            "| {} | [{}]({}) | {} | {}, {} | {} | {:.2f} | {:.2f} | {:.2g} % | {:.1f} | ![{}]({}) "
-            "|\n",
+            "| {} | [{}]({}) | {} | {}, {} | {} | {:.2f} | {:.2f} | {:.2g} % | {} | {:.1f} | "
+            "![{}]({}) |\n",
             r.view.op.op->title, lut.path.substr(lut.path.find('/') + 1), lut.path, size_text(lut),
             r.encoding.title, find_input_space(r.view.input).title, output_title(r),
             kCodes * error.photographs.p999, kCodes * error.photographs.mean,
-            100 * error.photographs.share, kCodes * error.p999, r.view.op.op->id, lut.thumbnail);
+            100 * error.photographs.share, lamps_of(lut.ringing), kCodes * error.p999,
+            r.view.op.op->id, lut.thumbnail);
     }
+    if (!set.nearer.empty()) text += "\nNearer: " + set.nearer + ".\n";
     return text;
 }
 
 std::string readme(const std::vector<ShippedLut>& luts) {
     std::string text =
-        "# LUTs\n\nClick the picture in your application's column. `tonewright bake` makes LUTs of "
-        "any other operator, look,\nparameter, size, input or display "
-        "([LUTs](../docs/luts.md), `tonewright list --hosts`).\n\n";
+        "# LUTs\n\nChoose your application's column and click a picture: that is the file. Load it "
+        "as the application's section\nbelow says. A file takes the input that stands before "
+        "`_to_` in its name; with scene-linear input it clips at 1.\nFiles with sRGB input work on "
+        "a displayed picture, which has no values above white: use them only in\napplications that "
+        "take no other input. `tonewright bake` makes LUTs of any other operator, look, "
+        "parameter,\nsize, input or display ([LUTs](../docs/luts.md)), and `tonewright bake "
+        "OPERATOR --exact` lists the most exact\nfiles for each application.\n\n";
     text += overview(luts);
     text +=
         "\nThe pictures show the test chart (`tonewright chart`) through that file, with the "
-        "interpolation of the\napplication. The input encoding of a file stands before `_to_` in "
-        "its name. Files for other encodings\ndo not fit: with scene-linear input they clip at 1. "
-        "Files with sRGB input work on a displayed picture,\nwhich has no values above white. Use "
-        "them only in applications that take no other input.\n\n"
-        "A cell is empty where the operator rings: it clips or bends between the nodes, and "
-        "saturated lamps get\nrings. `tonewright bake` also makes that LUT, and reports how much "
-        "it rings. Every file here follows its\noperator along rising exposure of the test "
-        "chart's lamps and hues: 99.9 % of the errors are within 0.02,\nand no channel falls by "
-        "more than 1/255 where the operator's does not.\n\n"
+        "interpolation of the\napplication.\n\n"
         "Errors are differences from the double-precision operator in 8-bit codes, [0, 255]; for "
         "Unity, of display-linear\nvalues as sRGB shows them. *Photographs* are colors as "
         "photographs and renders contain them, up to the brightest\nlight that the input holds; "
         "*every color* is the sample set: grays, grids of Rec.709, Rec.2020 and AP1 at five\n"
-        "exposures, random colors. `MANIFEST.csv` has the figures for both interpolations as code "
-        "values of 0 to 1, with\nthe maximum, the color differences, and the errors and falls "
-        "along "
-        "those rays. Generated by\n`tonewright bake --all luts`; do not edit.\n";
+        "exposures, random colors. *Lamps* are the test chart's lamps and hues along rising "
+        "exposure: *follow* means that\n99.9 % of the errors are within 5 codes, and that no "
+        "channel falls by more than a code where the operator's\ndoes not; a *ring* of N codes is "
+        "such a fall. Where photographs are more than one code off, the operator clips\nor bends "
+        "between the grid points, and each section says what is nearer. `MANIFEST.csv` has the "
+        "figures for\nboth interpolations as code values of 0 to 1, with the maximum and the color "
+        "differences. Generated by\n`tonewright bake --all luts`; do not edit.\n";
     for (const LutPresetSet* set : sets_of(luts))
         text += section(*set, luts);
     return text;
@@ -245,51 +253,63 @@ bool is_trilinear(const LutApplication& host) {
 }
 
 const std::vector<LutPresetSet>& lut_preset_sets() {
-    // LUTs with sRGB input are for 8-bit pictures: with 17 nodes their mean error is half a code
-    // value. The unit test ShippedSet.FollowsItsOperators measures that none of these rings.
+    // All files together have at most 62 MB, so only Resolve has 65 nodes a side. Unity's 32 are
+    // those of a new project.
+    static const std::vector<std::string> film = {
+        "agx_blender", "agx_sobotka", "aces_13", "aces_20", "gt7", "hable", "khronos_neutral"};
     static const std::vector<LutPresetSet> sets = {
-        {&find_lut_application("resolve"),
-         "",
-         {"agx_blender", "agx_sobotka", "aces_narkowicz", "hable", "khronos_neutral",
-          "reinhard_extended"},
-         {},
-         {{"agx_blender", 65}, {"khronos_neutral", 65}}},
-        {&find_lut_application("nuke"),
-         "every application with pictures in ACEScct: After Effects, Houdini, Flame, Baselight. In "
-         "applications with OpenColorIO, the [config](../ocio_config/README.md) is more accurate",
-         {"agx_blender", "agx_sobotka", "aces_20"},
-         {},
-         {{"agx_blender", 65}, {"agx_sobotka", 65}, {"aces_20", 65}}},
-        {&find_lut_application("premiere"),
-         "every editor with ARRI LogC3 footage",
-         {"agx_sobotka"},
-         49},
-        {&find_lut_application("ffmpeg"), "", {"agx_blender", "agx_sobotka"}, 65},
-        {&find_lut_application("unity"),
-         "",
-         kOperators,
-         {},
-         {{"agx_blender", 48},
-          {"aces_13", 64},
-          {"aces_20", 48},
-          {"aces_hill", 48},
-          {"gt7", 64},
-          {"khronos_neutral", 64}}},
-        {&find_lut_application("unreal"),
-         "",
-         {"agx_sobotka", "aces_20", "aces_narkowicz", "gt7", "hable", "reinhard_extended"},
-         {}},
-        {&find_lut_application("godot"),
-         "",
-         {"agx_blender", "agx_sobotka", "aces_13", "aces_20", "aces_hill", "aces_narkowicz", "gt7",
-          "hable", "reinhard_extended"},
-         {}},
-        {&find_lut_application("photoshop"),
-         "Affinity Photo, OBS Studio, darktable, G'MIC, GIMP, three.js",
-         kOperators,
-         17,
-         {{"aces_hill", 25}}},
-        {&find_lut_application("imagemagick"), "GraphicsMagick, RawTherapee", kOperators, 36},
+        {.host = &find_lut_application("resolve"),
+         .operators = {"agx_blender", "agx_sobotka", "aces_13", "aces_20", "aces_narkowicz", "gt7",
+                       "hable", "khronos_neutral", "reinhard_extended"},
+         .sizes = {{"agx_sobotka", 33}},
+         .approximate = {"aces_13", "gt7"},
+         .nearer = "a [DCTL](../docs/shaders.md) (`tonewright shader gt7 --for resolve -o "
+                   "gt7.dctl`); for footage within Rec.709, `--input lin_rec709`"},
+        {.host = &find_lut_application("nuke"),
+         .also = "every application with pictures in ACEScct: After Effects, Houdini, Flame, "
+                 "Baselight",
+         .operators = film,
+         .size = 33,
+         .approximate = {film.begin(), film.end()},
+         .nearer = "in applications with OpenColorIO, a ctf of scene-linear input (`tonewright "
+                   "bake gt7 --for nuke -o gt7.ctf`) or the [config](../ocio_config/README.md)"},
+        {.host = &find_lut_application("premiere"),
+         .also = "every editor with ARRI LogC3 footage",
+         .operators = film,
+         .size = 33,
+         .approximate = {film.begin(), film.end()},
+         .nearer = "65 nodes (`tonewright bake gt7 --for premiere -o gt7.cube`)"},
+        {.host = &find_lut_application("ffmpeg"),
+         .operators = film,
+         .size = 49,
+         .sizes = {{"hable", 33}},
+         .approximate = {"agx_blender", "aces_13", "aces_20", "gt7", "hable", "khronos_neutral"},
+         .nearer = "65 nodes (`tonewright bake gt7 --for ffmpeg -o gt7.cube`)"},
+        {.host = &find_lut_application("unity"),
+         .operators = kOperators,
+         .sizes = {{"agx_blender", 48}, {"khronos_neutral", 48}},
+         .approximate = {"aces_13", "aces_20", "aces_hill", "gt7"},
+         .nearer = "a larger Grading LUT Size (`--size 64`) or a [shader](../docs/shaders.md) "
+                   "(`tonewright shader gt7 --for unity -o gt7.shader`)"},
+        {.host = &find_lut_application("unreal"),
+         .operators = kOperators,
+         .approximate = {"aces_13", "aces_hill", "khronos_neutral"},
+         .nearer = "a [shader](../docs/shaders.md) (`tonewright shader gt7 --for unreal -o "
+                   "gt7.ush`)"},
+        {.host = &find_lut_application("godot"),
+         .operators = kOperators,
+         .nearer = "a [shader](../docs/shaders.md) (`tonewright shader gt7 --for godot -o "
+                   "gt7.glsl`)"},
+        {.host = &find_lut_application("photoshop"),
+         .also = "OBS Studio, Affinity Photo, darktable, G'MIC, GIMP, three.js",
+         .operators = kOperators,
+         .size = 25,
+         .nearer = "33 nodes (`tonewright bake gt7 --for photoshop -o gt7.cube`)"},
+        {.host = &find_lut_application("imagemagick"),
+         .also = "GraphicsMagick, RawTherapee",
+         .operators = kOperators,
+         .size = 36,
+         .nearer = "64 nodes (`tonewright bake gt7 --for imagemagick -o gt7.png`)"},
     };
     return sets;
 }

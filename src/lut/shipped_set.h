@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,16 @@ TONEWRIGHT_NAMESPACE_BEGIN
 struct LutPresetSet {
     const LutApplication* host = nullptr;
     /// Further applications that can use the same files.
-    std::string also;
-    /// Operators whose LUT follows them in saturated highlights, @see follows_operator(). LUTs of
-    /// the others ring.
+    std::string also = {};
     std::vector<std::string> operators;
-    /// Replaces the application's size if fewer nodes are enough.
-    std::optional<int> size;
-    /// By operator: nodes a side without ringing, if the size above is too small.
-    std::map<std::string, int> larger_sizes = {};
+    /// Replaces the application's size.
+    std::optional<int> size = {};
+    /// Sizes of single operators.
+    std::map<std::string, int> sizes = {};
+    /// Operators whose LUT does not follow them in saturated lamps, @see follows_operator().
+    std::set<std::string> approximate = {};
+    /// What is nearer to the operators: the rest of a sentence that begins with "Nearer: ".
+    std::string nearer = {};
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<LutPresetSet>& lut_preset_sets();
 

@@ -20,6 +20,9 @@ Vector3 hue_color(double hue, double saturation, double value) {
 std::vector<NamedColor> chart_colors() {
     constexpr std::array<const char*, 6> kNames = {"red",  "yellow", "green",
                                                    "cyan", "blue",   "magenta"};
+    constexpr std::array<const char*, 12> kHueNames = {
+        "red",  "orange", "yellow", "yellow-green", "green",   "blue-green",
+        "cyan", "azure",  "blue",   "violet",       "magenta", "crimson"};
     constexpr std::array<const char*, 4> kTintNames = {"gray", "light skin", "orange", "deep blue"};
     constexpr std::array<const char*, 4> kLampNames = {"red", "green", "blue", "neon magenta"};
     std::vector<NamedColor> colors;
@@ -28,9 +31,10 @@ std::vector<NamedColor> chart_colors() {
         const int hues = saturation == 1.0 ? 72 : 24;
         for (int i = 0; i < hues; ++i) {
             const double hue = static_cast<double>(i) / hues;
-            colors.push_back(
-                {fmt::format("hue {:.0f} degrees, saturation {}", 360 * hue, saturation),
-                 hue_color(hue, saturation, 1)});
+            const auto nearest = static_cast<std::size_t>(std::lround(12 * hue)) % kHueNames.size();
+            colors.push_back({fmt::format("{} (hue {:.0f} degrees, saturation {})",
+                                          kHueNames.at(nearest), 360 * hue, saturation),
+                              hue_color(hue, saturation, 1)});
         }
     }
     for (const Primaries* gamut : {&kP3D65, &kRec2020}) {

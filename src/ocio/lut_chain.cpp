@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
+#include <variant>
 
 #include "base/format_number.h"
 #include "lut/header.h"
@@ -39,6 +42,14 @@ Lowered lower(const LutRequest& request, LutNodes nodes) {
     if (nodes != LutNodes::automatic) options.fits_cubes = nodes == LutNodes::fitted;
     options.cube_edge = request.size.value_or(options.cube_edge);
     return lower_to_ocio(build_view(request.view), options);
+}
+
+bool fits_clf(const LoweredOps& ops) {
+    return std::none_of(ops.begin(), ops.end(), [](const LoweredOp& op) {
+        const auto* table = std::get_if<Lut1DOp>(&op.op);
+        return std::holds_alternative<FixedFunctionOp>(op.op) ||
+               std::holds_alternative<BuiltinOp>(op.op) || (table && table->keeps_hue);
+    });
 }
 
 /// The reference and OpenColorIO on the same light.
@@ -127,15 +138,8 @@ std::string write(const LutRequest& request, const Lowered& lowered, const LutEr
     about.addChildElement("InputDescriptor", input.c_str());
     about.addChildElement("OutputDescriptor", output.substr(output.find(' ') + 1).c_str());
     std::ostringstream text;
-    try {
-        group->write(OCIO::Config::CreateRaw(),
-                     is_ctf ? "Color Transform Format" : "Academy/ASC Common LUT Format", text);
-    } catch (const OCIO::Exception& e) {
-        if (is_ctf) throw Error(fmt::format("bake: format is ctf: {}", e.what()));
-        throw Error(fmt::format(
-            "bake: format is clf; expected ctf, because clf lacks an operation of {} ({})",
-            request.view.op.label, lowered.summary));
-    }
+    group->write(OCIO::Config::CreateRaw(),
+                 is_ctf ? "Color Transform Format" : "Academy/ASC Common LUT Format", text);
     return text.str();
 }
 
@@ -150,8 +154,14 @@ bool is_lut_chain(const LutRequest& request) {
 LutChain make_lut_chain(const LutRequest& request, LutNodes nodes) {
     check(request, nodes);
     const Lowered lowered = lower(request, nodes);
+    const bool is_for_both = fits_clf(lowered.ops);
+    if (request.format == LutFormat::clf && !is_for_both) {
+        throw Error(fmt::format(
+            "bake: format is clf; expected ctf, because clf lacks an operation of {}: {}",
+            request.view.op.label, lowered.summary));
+    }
     const LutError error = measure(request.view, lowered);
-    return {write(request, lowered, error), error, lowered.summary, lowered.is_exact};
+    return {write(request, lowered, error), error, lowered.summary, is_for_both};
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -19,8 +19,9 @@ struct LutChain {
     LutError error;
     /// "matrix, half LUT, 3D LUT"
     std::string operations;
-    /// False if a stage is sampled into a 3D LUT.
-    bool is_exact = true;
+    /// False if only a ctf holds the operations: a clf has no fixed functions and no hue
+    /// adjustment.
+    bool fits_clf = true;
 };
 /// @param request  of is_lut_chain(); the size is that of sampled 3D LUTs (default 65)
 /// @param nodes    of sampled 3D LUTs; `automatic`: as in the config

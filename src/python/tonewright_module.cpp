@@ -464,7 +464,8 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
         error = baked.error;
         request.size = baked.lut.size;
         request.dimension = baked.lut.dimension == 3 ? LutDimension::three : LutDimension::one;
-        if (const std::string text = lut_warning(file, request, baked, is_own_encoding);
+        if (const std::string text =
+                lut_warning(file, request, baked, is_own_encoding ? reader : nullptr);
             !text.empty())
             warn(text);
         if (is_picture_format(request.format)) {

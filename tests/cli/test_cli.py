@@ -593,6 +593,37 @@ def check_bake_warnings(report, command, scratch):
     report.check("bake of a LUT that does not ring: no warning", code == OK and not lines, err)
 
 
+def check_exact_forms(report, command, scratch):
+    """`bake --exact`: the most exact file first, by commands that run."""
+    code, out, err = call(command, ["bake", "khronos_neutral", "--exact", "--for", "nuke", "--set", "start_compression=0.7"])
+    lines = out.splitlines()
+    rows = [(first.split()[0], second.strip()) for first, second in zip(lines, lines[1:]) if second.startswith("           ")]
+    report.check("bake --exact: shader and ctf are exact, the cube has an error",
+                 code == OK and not err and [row[0] for row in rows[:2]] == ["exact", "exact"] and float(rows[2][0]) > 1
+                 and any("-o khronos_neutral.ctf" in row[1] for row in rows), out)
+    for _, line in rows:
+        words = line.split()
+        code, _, err = call(command, [*words[1:-1], scratch / words[-1]])
+        report.check(f"bake --exact: {line}", code == OK and "--set start_compression=0.7" in line and (scratch / words[-1]).is_file(), err)
+    code, out, _ = call(command, ["bake", "agx_blender", "--exact", "--for", "resolve"])
+    report.check("bake --exact of a grid: its formula in DCTL has an error",
+                 code == OK and "shader agx_blender:formula --for resolve" in out and "exact  DaVinci" not in out, out)
+    for arguments, word in ((["--exact"], "OPERATOR"), (["hable", "--exact", "-o", "x.cube"], "no -o"),
+                            (["hable", "--exact", "--for", "nook"], "nuke")):
+        code, out, err = call(command, ["bake", *arguments])
+        report.check(f"bake {' '.join(arguments)} is refused", code == USAGE and not out and word in err
+                     and len(err.splitlines()) == 1, err)
+    path = scratch / "x"
+    for arguments, word in ((["khronos_neutral", "--format", "clf", "-o", f"{path}.clf"], "expected ctf"),
+                            (["gt7", "--format", "clf", "--size", "9", "-o", f"{path}.clf"], "[17, 129]"),
+                            (["gt7", "--format", "clf", "--depth", "16", "-o", f"{path}.clf"], "depth"),
+                            (["gt7", "--format", "clf", "--nodes", "smooth", "-o", f"{path}.clf"], "smooth"),
+                            (["gt7", "--format", "clf", "--max-error", "1e-9", "-o", f"{path}.clf"], "max error")):
+        code, _, err = call(command, ["bake", *arguments, "--input-encoding", "linear"])
+        report.check(f"bake {' '.join(arguments[:-2])} of scene-linear input is refused",
+                     code == USAGE and word in err and len(err.splitlines()) == 1 and not list(scratch.glob("x.*")), err)
+
+
 def check_bake(report, command, scratch):
     """Every format, as OpenColorIO reads it: the nodes are the operator, between them the error is what bake says."""
     if ocio is None:
@@ -1140,7 +1171,7 @@ def main():
             jobs.append((check, (report, command, *arguments)))
 
         for check, *arguments in share_of([
-                (check_apply,), (check_statistics,), (check_frames, picture), (check_bake,), (check_verify, config, picture),
+                (check_apply,), (check_statistics,), (check_frames, picture), (check_bake,), (check_exact_forms,), (check_verify, config, picture),
                 (check_archive,), (check_chart, picture), (check_sheet, picture), (check_full_disks,),
                 (check_apply_many, picture), (check_limits, picture), (check_module,)], 3):
             add(check, *arguments)

@@ -26,19 +26,20 @@ struct LutApplication {
     std::string steps;
     /// Tested versions. Empty: the format was checked, but the application did not run.
     std::string tested;
-    /// The application can convert light to any primaries before the LUT. LUTs for it use the
-    /// operator's own primaries: a clip then falls on the sides of the grid, not through its cells.
+    /// The application can convert light to any primaries before the LUT. @see lut_input_of
     bool takes_any_primaries = false;
     /// Instructions for a clf or ctf file of scene-linear input. Empty: the application does not
     /// read chains of operations.
     std::string chain_steps = {};
+    /// Grid points a side that the application reads; it has `size` unless the user wants others.
+    int largest_size = 129;
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<LutApplication>& all_lut_applications();
 /// @throws Error with the nearest name.
 [[nodiscard]] TONEWRIGHT_API const LutApplication& find_lut_application(std::string_view id);
 
-/// The input space of a LUT of this operator for the application: that of the operator's working
-/// primaries if the application can convert to it, else that of the encoding.
+/// The input space of a LUT of this operator for the application: Rec.709 or Rec.2020, whichever
+/// suits the operator, if the application can convert to it; else that of the encoding.
 [[nodiscard]] TONEWRIGHT_API std::string lut_input_of(const LutApplication& application,
                                                       const Operator& op);
 

@@ -200,6 +200,7 @@ int run_config(Options& options) {
             warn(fmt::format("{} has {} hard links: only this name gets the new contents",
                              changed.path, names));
         }
+        if (!changed.unchecked.empty()) warn(changed.unchecked);
         replace_config(changed, options);
         return kOk;
     }

@@ -160,6 +160,15 @@ OCIO::ConfigRcPtr read_config(const std::string& path, const std::string& text) 
     });
 }
 
+AnyConfig read_any_config(const std::string& path, const std::string& text) {
+    check_size(path, text);
+    if (std::optional<ReadableProfile> newer = make_readable(text)) {
+        OCIO::ConfigRcPtr config = read_config(path, newer->text);
+        return {std::move(config), std::move(newer)};
+    }
+    return {read_config(path, text)};
+}
+
 void redirect_opencolorio_messages(const std::function<void(const std::string&)>& print) {
     const auto said = std::make_shared<std::set<std::string>>();
     const auto lock = std::make_shared<std::mutex>();

@@ -3,8 +3,10 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 
+#include <optional>
 #include <string>
 
+#include "ocio/newer_profile.h"
 #include "tonewright/version.h"
 namespace OCIO = OCIO_NAMESPACE;
 
@@ -21,6 +23,16 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The same for a text, as a config at this path.
 [[nodiscard]] OCIO::ConfigRcPtr read_config(const std::string& path, const std::string& text);
+
+/// A config of any profile.
+struct AnyConfig {
+    OCIO::ConfigRcPtr config;
+    /// How the config was read, if its profile is newer than those of OpenColorIO.
+    std::optional<ReadableProfile> newer = {};
+};
+
+/// The same for a config of any profile: of a newer one, without what OpenColorIO does not know.
+[[nodiscard]] AnyConfig read_any_config(const std::string& path, const std::string& text);
 
 /// The text of a config. @throws FileError
 [[nodiscard]] std::string read_config_text(const std::string& path);

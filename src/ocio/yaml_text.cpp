@@ -90,9 +90,16 @@ void emit_as_config(YAML::Emitter& out, const YAML::Node& node) {
                 emit_as_config(out, item);
             out << YAML::EndSeq;
             break;
+        case YAML::NodeType::Null:
+            out << YAML::Null;
+            break;
         default:
-            if (node.Scalar().find('\n') != std::string::npos) out << YAML::Literal;
-            if (is_quoted) out << YAML::DoubleQuoted;
+            // One of the two: yaml-cpp would keep the first one for the rest of the document.
+            if (node.Scalar().find('\n') != std::string::npos) {
+                out << YAML::Literal;
+            } else if (is_quoted) {
+                out << YAML::DoubleQuoted;
+            }
             out << node.Scalar();
     }
 }

@@ -160,6 +160,87 @@ display_colorspaces: [
       !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_REC.1886-REC.709}},
   ]
 # the end"""
+# Profile 2.5, as OpenColorIO's own configs: ids, mirrored displays, and transforms that 2.1 does not know.
+NEWER = """# OpenColorIO 2.5
+ocio_profile_version: 2.5
+
+environment:
+  {}
+search_path: ""
+strictparsing: true
+name: newer
+description: |
+  Two lines
+  -- of text
+
+roles: {aces_interchange: ACES2065-1, cie_xyz_d65_interchange: CIE-XYZ-D65, data: Raw, scene_linear: ACEScg}
+file_rules:
+  - !<Rule> {name: Default, colorspace: ACEScg}
+viewing_rules:
+  - !<Rule> {name: Any Linear, encodings: [scene-linear]}
+shared_views:
+  - !<View> {name: ACES 2.0, view_transform: ACES 2.0, display_colorspace: <USE_DISPLAY_NAME>, rule: Any Linear}
+displays:
+  sRGB - Display:
+    - !<Views> [ACES 2.0]
+  Display P3 - Display:
+    - !<Views> [ACES 2.0]
+  Display P3 HDR - Display:
+    - !<Views> [ACES 2.0]
+  Rec.1886 Rec.709 - Display:
+    - !<Views> [ACES 2.0]
+active_displays: [sRGB - Display, Display P3 - Display, Display P3 HDR - Display, Rec.1886 Rec.709 - Display]
+active_views: [ACES 2.0]
+looks:
+  - !<Look>
+    name: hue
+    process_space: ACEScg
+    transform: !<GradingHueCurveTransform> {style: log}
+view_transforms:
+  - !<ViewTransform>
+    name: ACES 2.0
+    interchange:
+      amf_transform_ids: |
+        urn:ampas:aces:transformId:v2.0:Output.Academy.Rec709-D65_100nit_in_Rec709-D65_BT1886.a2.v1
+    from_scene_reference: !<BuiltinTransform> {style: ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - SDR-100nit-REC709_2.0}
+
+display_colorspaces:
+  - !<ColorSpace> {name: CIE-XYZ-D65, encoding: display-linear}
+  - !<ColorSpace>
+    name: sRGB - Display
+    aliases: [srgb_rec709_display]
+    interop_id: srgb_rec709_display
+    encoding: sdr-video
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_sRGB - MIRROR NEGS}
+  - !<ColorSpace>
+    name: Display P3 - Display
+    aliases: [srgb_p3d65_display]
+    interop_id: srgb_p3d65_display
+    encoding: sdr-video
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_DisplayP3}
+  - !<ColorSpace>
+    name: Display P3 HDR - Display
+    aliases: [srgbe_p3d65_display]
+    interop_id: srgbe_p3d65_display
+    encoding: edr-video
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_DisplayP3-HDR}
+  - !<ColorSpace>
+    name: Rec.1886 Rec.709 - Display
+    aliases: [g24_rec709_display]
+    interop_id: g24_rec709_display
+    encoding: sdr-video
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_REC.1886-REC.709 - MIRROR NEGS}
+colorspaces:
+  - !<ColorSpace> {name: ACES2065-1, aliases: [lin_ap0_scene], interop_id: lin_ap0_scene, encoding: scene-linear}
+  - !<ColorSpace>
+    name: ACEScg
+    aliases: [lin_ap1_scene]
+    interop_id: lin_ap1_scene
+    encoding: scene-linear
+    to_scene_reference: !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}
+  - !<ColorSpace> {name: Raw, isdata: true}
+"""
+VERSION = tuple(int(n) for n in ocio.GetVersion().split(".")[:2])
 # OpenColorIO's sRGB operation is 1e-5 from IEC 61966-2-1, its PQ 7e-5 near black; the rest is float32 in matrices.
 BOUND = 1e-4
 
@@ -528,12 +609,148 @@ def check_theirs(report, command, folder, path, views):
     """A config that people have: into it, and nothing of theirs is changed."""
     before = numbers_of(path)
     done = call(command, "--into", path, "--views", "AgX,hable", "--looks", "none", *views)
-    errors = [line for line in done.stderr.splitlines() if "Warning" not in line]  # of their config
+    # OpenColorIO's messages are of their config.
+    errors = [line for line in done.stderr.splitlines() if not line.startswith("tonewright: OpenColorIO: ")]
     report.check(f"{folder}: --into", done.returncode == 0 and not errors, done.stderr)
     after = numbers_of(path)
     changed = [k for k in before if after.get(k) != before[k]]
     report.check(f"{folder}: all {len(before)} of theirs make the same numbers", not changed, changed)
     report.check(f"{folder}: has {len(after) - len(before)} more", len(after) > len(before))
+
+
+# Prints what a config shows, as a hash for each space and view, in the OpenColorIO of the Python that runs it.
+HASHES = """
+import hashlib, sys
+import numpy as np
+import PyOpenColorIO as ocio
+config = ocio.Config.CreateFromFile(sys.argv[1])
+config.setProcessorCacheFlags(ocio.PROCESSOR_CACHE_OFF)
+config.validate()
+light = np.random.default_rng(2).uniform(-0.2, 4, (256, 3)).astype(np.float32)
+def show(name, *arguments):
+    image = light.copy()
+    try:
+        config.getProcessor(*arguments).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+        result = hashlib.sha256(image.tobytes()).hexdigest()
+    except ocio.Exception as error:
+        result = repr(str(error))
+    print(name, result, sep="\\t")
+for space in config.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL):
+    show(space.getName(), space.getName(), "aces_interchange")
+    show("to " + space.getName(), "aces_interchange", space.getName())
+for display in config.getDisplays():
+    for view in config.getViews(display):
+        show(f"{view} on {display}", "aces_interchange", display, view, ocio.TRANSFORM_DIR_FORWARD)
+"""
+
+
+def hashes_of(newer, path):
+    done = subprocess.run([newer, "python3", "-c", HASHES, path], capture_output=True, text=True, check=True)
+    return dict(line.split("\t") for line in done.stdout.splitlines())
+
+
+def older(text):
+    """A config of profile 2.5 for OpenColorIO 2.1, by hand: other numbers below 0, no ACES 2.0, no Display P3 HDR."""
+    text = re.sub(r" - MIRROR NEGS|    interop_id: .*\n|, interop_id: \w+|    interchange:\n(      .*\n)+", "", text)
+    text = text.replace("profile_version: 2.5", "profile_version: 2.1")
+    for style in ("DISPLAY - CIE-XYZ-D65_to_DisplayP3-HDR", "ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - SDR-100nit-REC709_2.0"):
+        text = text.replace(f"!<BuiltinTransform> {{style: {style}}}", "!<MatrixTransform> {}")
+    text = text.replace("!<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_DisplayP3}", """!<GroupTransform>
+      children:
+        - !<MatrixTransform> {matrix: [2.4934969119414, -0.93138361791912, -0.40271078445071, 0, -0.82948896956157,
+            1.7626640603183, 0.023624685841943, 0, 0.035845830243784, -0.076172389268041, 0.95688452400768, 0, 0, 0, 0, 1]}
+        - !<ExponentWithLinearTransform> {gamma: [2.4, 2.4, 2.4, 1], offset: [0.055, 0.055, 0.055, 0], direction: inverse}""")
+    return text.replace("!<GradingHueCurveTransform> {style: log}", "!<MatrixTransform> {}")
+
+
+def check_newer_text(report, command, root, newer):
+    """A config of profile 2.5, whatever OpenColorIO this is: its text is kept, and what cannot be run is named."""
+    folder = root / "newer"
+    folder.mkdir()
+    path = folder / "c.ocio"
+    path.write_text(NEWER)
+    warnings = 1 if VERSION < (2, 5) else 0
+    done = call(command, "--strict", "--into", path, "--views", "hable")
+    report.check("profile 2.5: --strict", done.returncode == warnings and (not warnings or path.read_text() == NEWER), done.stderr)
+    if not warnings:
+        call(command, "--into", path, "--remove")
+    done = call(command, "--into", path, "--views", "hable,AgX", "--looks", "none")
+    report.check("profile 2.5: --into", done.returncode == 0 and done.stderr.count("\n") == warnings, done.stderr)
+    if warnings:
+        report.check("profile 2.5: one line of what is not checked", all(words in done.stderr for words in (
+            "c.ocio has profile 2.5", "color space Display P3 HDR - Display", "view transform ACES 2.0", "look hue",
+            "negative values not checked on sRGB - Display")), done.stderr)
+    kept = [line for line in NEWER.splitlines() if not line.startswith(("search_path", "active_views"))]
+    gone = lines_that_are_gone(kept, path.read_text().splitlines())
+    report.check("profile 2.5: all other lines are as they were", not gone, gone)
+    exact = re.search(r"^Rec.1886 Rec.709 - Display +Hable +(\S+)", done.stdout, re.M)
+    report.check("profile 2.5: Hable on Rec.1886 is as exact as in our config", exact and float(exact[1]) < 1e-5, done.stdout)
+    readable = folder / "older.ocio"
+    readable.write_text(older(path.read_text()) if warnings else path.read_text())
+    for display, option in (("sRGB - Display", "srgb"), ("Display P3 - Display", "display_p3"),
+                            ("Rec.1886 Rec.709 - Display", "rec1886")):
+        check_picture(report, command, readable, display, "Hable", ["hable"], option, ("ACEScg", 1))
+        check_picture(report, command, readable, display, "AgX", ["agx_blender"], option, ("ACEScg", 1))
+    if newer:
+        hashes = hashes_of(newer, path)
+        report.check("profile 2.5: the newer OpenColorIO shows it", len(hashes["Hable on sRGB - Display"]) == 64, hashes)
+    once = path.read_text()
+    done = call(command, "--into", path, "--update")
+    report.check("profile 2.5: --update", done.returncode == 0 and path.read_text() == once, done.stderr)
+    done = call(command, "--into", path, "--remove")
+    report.check("profile 2.5: --remove leaves the config byte for byte", done.returncode == 0 and path.read_text() == NEWER
+                 and not (folder / "tonewright").exists(), done.stderr)
+    # What our views need cannot be left out.
+    text = NEWER.replace("{name: CIE-XYZ-D65, encoding: display-linear}", "{name: CIE-XYZ-D65, from_display_reference: "
+                         "!<GradingHueCurveTransform> {style: log}}")
+    path.write_text(text)
+    done = call(command, "--into", path, "--views", "hable")
+    if warnings:
+        report.check("profile 2.5: an interchange role that OpenColorIO does not know", done.returncode == 3
+                     and "role cie_xyz_d65_interchange is CIE-XYZ-D65, whose transform" in done.stderr
+                     and path.read_text() == text, done.stderr)
+    for version in ("2.5x", "3", "[2]"):
+        text = NEWER.replace("profile_version: 2.5", f"profile_version: {version}")
+        path.write_text(text)
+        done = call(command, "--into", path, "--views", "hable")
+        report.check(f"profile {version}: refused in one line", done.returncode == 3 and path.read_text() == text
+                     and done.stderr.count("\n") == 1 and "c.ocio" in done.stderr, done.stderr)
+
+
+def check_newer_published(report, command, root, newer):
+    """The ACES CG and Studio configs of profile 2.5, and our own: run in the newer OpenColorIO."""
+    names = "import PyOpenColorIO as o; print(*(c[0] for c in o.BuiltinConfigRegistry().getBuiltinConfigs()), sep='\\n')"
+    builtin = subprocess.run([newer, "python3", "-c", names], capture_output=True, text=True, check=True).stdout.split()
+    configs = {}
+    for name in builtin:
+        if re.match(r"(cg|studio)-config-.*_ocio-v2\.5$", name):
+            write = f"import PyOpenColorIO as o; print(o.Config.CreateFromBuiltinConfig({name!r}).serialize())"
+            configs[name] = subprocess.run([newer, "python3", "-c", write], capture_output=True, text=True, check=True).stdout
+    if not configs:
+        print("skipped: the newer OpenColorIO has no configs of profile 2.5")
+        return
+    subprocess.run([command, "config", "-o", root / "ours 2.5", "--views", "clamp", "--profile", "2.5"], check=True)
+    configs["ours 2.5"] = (root / "ours 2.5" / "config.ocio").read_text()
+    for name, text in configs.items():
+        folder = root / name
+        folder.mkdir(exist_ok=True)
+        path = folder / "config.ocio"
+        path.write_text(text)
+        before = hashes_of(newer, path)
+        done = call(command, "--into", path, "--views", "AgX,hable,khronos_neutral")
+        report.check(f"{name}: --into", done.returncode == 0, done.stderr)
+        after = hashes_of(newer, path)
+        changed = [key for key in before if after.get(key) != before[key]]
+        report.check(f"{name}: all {len(before)} of theirs make the same numbers", not changed, changed)
+        failed = [key for key in after if key not in before and len(after[key]) != 64]
+        report.check(f"{name}: {len(after) - len(before)} more", len(after) > len(before) and not failed, failed)
+        checked = subprocess.run([newer, "ociocheck", "--iconfig", path], capture_output=True, text=True, check=False)
+        if "OpenColorIO" in checked.stdout:
+            report.check(f"{name}: the newer ociocheck", checked.returncode == 0 and "warning" not in checked.stdout.lower(),
+                         checked.stdout[-300:])
+        done = call(command, "--into", path, "--remove")
+        report.check(f"{name}: --remove leaves the config byte for byte", done.returncode == 0 and path.read_text() == text,
+                     done.stderr)
 
 
 def check_published(report, command, root):
@@ -550,9 +767,11 @@ def check_published(report, command, root):
     after = numbers_of(own / "config.ocio")
     report.check(f"ours: all {len(before)} make the same numbers", all(after.get(k) == before[k] for k in before))
     newer = os.environ.get("TONEWRIGHT_NEWER_OCIO")
+    check_newer_text(report, command, root, newer)
     if not newer:
         print("skipped: the ACES CG and Studio configs, TONEWRIGHT_NEWER_OCIO is not set")
         return
+    check_newer_published(report, command, root, newer)
     for name in ("cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "studio-config-v1.0.0_aces-v1.3_ocio-v2.1"):
         folder = root / name
         folder.mkdir()

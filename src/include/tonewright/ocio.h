@@ -94,6 +94,9 @@ struct ExtendedConfig {
         std::vector<std::string> names;
     };
     std::vector<Added> added;
+    /// What `check` cannot run, because the profile of the config is newer than those that the
+    /// linked OpenColorIO reads; empty: nothing. One line.
+    std::string unchecked;
     /// Reads the written config with its tables. Checks that OpenColorIO accepts it, that all old
     /// spaces and views give the same numbers, and that the new views match the operators.
     /// @throws Error  a check fails

@@ -55,7 +55,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "sidedata=delete,format=yuv420p -color_primaries bt709 -color_trc bt709 -colorspace bt709 "
          "-c:a copy out.mkv: HDR10 (PQ, Rec.2020) in, BT.709 out, 4:2:0 of 8 bits; yuv420p10le for "
          "10",
-         "ffmpeg 5.1",
+         "ffmpeg 5.1 and 9.0",
          false,
          "",
          128},  // libavfilter/vf_lut3d.c refuses more
@@ -134,10 +134,10 @@ const std::vector<LutApplication>& all_lut_applications() {
          "pq",
          "srgb",
          {},
-         "trilinear",
+         "tetrahedral",
          "mpv --vo=gpu-next --lut=FILE --lut-type=conversion --target-trc=srgb "
          "--target-prim=bt.709 hdr10.mkv",
-         "mpv 0.35.1"},
+         "mpv 0.41.0; mpv 0.35.1, which is trilinear"},
         {"gmic",
          "G'MIC, GIMP with G'MIC",
          LutFormat::cube,
@@ -165,7 +165,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "RawTherapee 5.9"},
         {"imagemagick", "ImageMagick, GraphicsMagick", LutFormat::hald, 64, "srgb", "srgb", 16,
          "trilinear", "convert in.png FILE -hald-clut out.png",
-         "ImageMagick 6.9.11, GraphicsMagick 1.3.40"},
+         "ImageMagick 6.9.11 and 7.1.2, GraphicsMagick 1.3.40"},
         {"flame", "Flame, Lustre", LutFormat::threedl, 33, "acescct", "rec1886", 12, "trilinear",
          "LUT Editor > Import, on a picture in ACEScct", ""},
         {"houdini",

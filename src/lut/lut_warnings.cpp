@@ -5,9 +5,22 @@
 
 #include <cmath>
 
-TONEWRIGHT_NAMESPACE_BEGIN
+#include "base/format_number.h"
 
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
+
+/// The lut1d of ffmpeg divides by the larger of DOMAIN_MAX and 1, and ignores DOMAIN_MIN.
+std::string domain_warning(const std::string& file, const LutRequest& request) {
+    const InputEncoding& input = request.encoding;
+    if (request.format != LutFormat::cube || !input.is_linear) return {};
+    if (input.scene_lo == 0 && input.scene_hi >= 1) return {};
+    return fmt::format(
+        "{} has the domain {} to {}, and ffmpeg reads one from 0 to at least 1; use "
+        "--input-encoding linear:0:{}, or --format clf or spi1d for OpenColorIO",
+        file, shortest(input.scene_lo), shortest(input.scene_hi),
+        shortest(std::fmax(1, input.scene_hi)));
+}
 
 /// What the user can change: nothing that the application fixes.
 std::string remedy(const LutRequest& request, const BakedLut& baked, const LutApplication* host) {
@@ -31,7 +44,7 @@ std::string remedy(const LutRequest& request, const BakedLut& baked, const LutAp
 
 std::string lut_warning(const std::string& file, const LutRequest& request, const BakedLut& baked,
                         const LutApplication* host) {
-    if (baked.lut.dimension != 3) return {};
+    if (baked.lut.dimension != 3) return domain_warning(file, request);
     constexpr double kCodes = 255;
     const std::string help = remedy(request, baked, host);
     if (help.empty()) return {};

@@ -7,6 +7,7 @@ has (its bound is the program's arithmetic), and with the operator itself (its b
 
 import argparse
 import collections
+import os
 import re
 import subprocess
 import tempfile
@@ -14,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pictures import Report, evaluate, log2_decode, need_program, read_rgb, run, unstack, write_exr
+from pictures import Report, evaluate, log2_decode, need_program, read_rgb, run, skip, unstack, write_exr
 
 from lut_tables import hald_cube, read_cube  # python_check/, which pictures.py puts on the path
 
@@ -69,8 +70,10 @@ def write_picture(path, rgb, depth="uint16"):
 class LutTest:
     """A program's output for the codes, against a file's numbers and against the operator."""
 
-    def __init__(self, command, scratch, client):
-        self.command, self.scratch, self.client, self.version = command, scratch, client, version_of(client)
+    def __init__(self, command, scratch, client, runner=()):
+        """runner: the words before the name of the program."""
+        self.command, self.scratch, self.client, self.version = command, scratch, client, version_of(client, runner)
+        self.program = [*runner, client.program]
         self.report, self.codes, self.rows = Report(), codes(), []
         flat = self.codes.reshape(-1, 3).astype(float)
         self.flat = flat
@@ -123,10 +126,10 @@ class LutTest:
 Client = collections.namedtuple("Client", "title program package version")
 
 
-def version_of(client):
+def version_of(client, runner=()):
     """`G'MIC 2.9.4`, by what the program says of itself."""
     try:
-        done = subprocess.run(client.version.split(), capture_output=True, text=True, check=False)
+        done = subprocess.run([*runner, *client.version.split()], capture_output=True, text=True, check=False)
         number = re.search(r"\d+(\.\d+)+", done.stdout + done.stderr)
     except FileNotFoundError:
         number = None
@@ -136,17 +139,21 @@ def version_of(client):
 def lut_test(doc, main, *clients, needs=()):
     """Runs main(LutTest) for the command of the arguments, and for one of several clients by its program's name.
 
-    needs: further programs, as (name, Debian package).
+    --newer runs the client as `$TONEWRIGHT_NEWER_PROGRAMS PROGRAM ...`. needs: further programs, as (name, Debian package).
     """
     parser = argparse.ArgumentParser(description=doc.splitlines()[0])
     parser.add_argument("command", type=Path)
     if len(clients) > 1:
         parser.add_argument("program", choices=[client.program for client in clients])
+    parser.add_argument("--newer", action="store_true")
     arguments = parser.parse_args()
+    runner = [os.environ.get("TONEWRIGHT_NEWER_PROGRAMS", "")] if arguments.newer else []
+    if runner == [""]:
+        skip("TONEWRIGHT_NEWER_PROGRAMS is not set")
     client = next(c for c in clients if len(clients) == 1 or c.program == arguments.program)
-    for program, package in [(client.program, client.package), ("oiiotool", "openimageio-tools"), *needs]:
+    for program, package in [(client.program, client.package), ("oiiotool", "openimageio-tools"), *needs][bool(runner):]:
         need_program(program, package)
     with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
-        test = LutTest(arguments.command.resolve(), Path(folder), client)
+        test = LutTest(arguments.command.resolve(), Path(folder), client, runner)
         main(test)
         return test.finish()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """ffmpeg's lut3d, lut1d and haldclut with LUTs of `tonewright bake`, against the file itself and against the operator.
 
-    python3 tests/parity/clients/test_ffmpeg.py build/release/bin/tonewright
+    python3 tests/parity/clients/test_ffmpeg.py build/release/bin/tonewright [--newer]
 
 ffmpeg reads float EXR, whose pixels are the codes that the LUT takes, and writes float EXR: no 8-bit step, no swscale.
 Real pictures join the test chart where they are found, see pictures.shared_picture. The last line is
@@ -10,6 +10,7 @@ Real pictures join the test chart where they are found, see pictures.shared_pict
 
 import json
 import shlex
+import subprocess
 
 import numpy as np
 
@@ -24,10 +25,11 @@ from pictures import (evaluate, log2_decode, log2_encode, read_exr, read_rgb, ru
 SAMPLES = 20000
 
 
-def through_ffmpeg(codes, filter_, scratch):
+def through_ffmpeg(test, codes, filter_):
     """Codes (height, width, 3) through a filter. ffmpeg runs in the folder: its filter syntax cannot quote any path."""
+    scratch = test.scratch
     write_exr(scratch / "codes.exr", unstack(codes))
-    run("ffmpeg", "-v", "error", "-nostdin", "-y", "-i", "codes.exr", "-vf", filter_, "-pix_fmt", "gbrpf32le",
+    run(*test.program, "-v", "error", "-nostdin", "-y", "-i", "codes.exr", "-vf", filter_, "-pix_fmt", "gbrpf32le",
         "-update", 1, "-frames:v", 1, "graded.exr", folder=scratch)
     return stack(read_exr(scratch / "graded.exr"))
 
@@ -48,7 +50,7 @@ def through_haldclut(test, codes, hald, interpolation, form):
     """form: of the pixels of both pictures, rgb48le or gbrpf32le. ffmpeg itself would choose 8 bits, and it takes the
     channels of planar integers for each other."""
     graph = f"[0]format={form}[a];[1]format={form}[b];[a][b]haldclut=interp={interpolation}"
-    arguments = ["ffmpeg", "-v", "error", "-nostdin", "-y", "-i", codes.name, "-i", hald.name, "-lavfi", graph,
+    arguments = [*test.program, "-v", "error", "-nostdin", "-y", "-i", codes.name, "-i", hald.name, "-lavfi", graph,
                  "-pix_fmt", form, "-update", 1, "-frames:v", 1]
     if form == "gbrpf32le":
         run(*arguments, "graded.exr", folder=test.scratch)
@@ -61,7 +63,7 @@ def check_modes(test):
     """Both interpolations of lut3d and haldclut, with numbers of 32 and of 16 bits."""
     for name, interpolate, host in (("tetrahedral", tetrahedral, "ffmpeg"), ("trilinear", trilinear, "gmic")):
         cube, table, stated = test.cube(host)
-        shown = through_ffmpeg(test.codes, f"lut3d={cube.name}:interp={name}", test.scratch)
+        shown = through_ffmpeg(test, test.codes, f"lut3d={cube.name}:interp={name}")
         test.compare(f"lut3d, .cube 33, {name}, float", shown, interpolate(table, test.flat), stated, FLOAT32, False)
         path, stated = test.bake(host, "hald.exr", "--format", "hald", "--size", 36, "--depth", 32)
         table = hald_cube(read_rgb(path, test.scratch))
@@ -71,6 +73,55 @@ def check_modes(test):
         table = hald_cube(read_rgb(path, test.scratch))
         shown = through_haldclut(test, test.picture("codes.png"), path, name, "rgb48le")
         test.compare(f"haldclut of 36, {name}, 16 bits", shown, interpolate(table, test.flat), stated, BITS16)
+
+
+def check_limits(test):
+    """What ffmpeg does not read in a .cube: both tables of resolve_cube, and domains that do not start at 0 or end below 1."""
+    report, scratch = test.report, test.scratch
+    run(test.command, "bake", "agx_sobotka", "--format", "resolve_cube", "--size", 17, "--nodes", "sampled", "-o",
+        scratch / "resolve.cube")
+    write_exr(scratch / "codes.exr", unstack(test.codes))
+    done = subprocess.run([*test.program, "-v", "error", "-nostdin", "-y", "-i", "codes.exr", "-vf", "lut3d=resolve.cube",
+                           "-pix_fmt", "gbrpf32le", "-update", "1", "-frames:v", "1", "refused.exr"],
+                          cwd=scratch, capture_output=True, text=True, check=False)
+    report.check("resolve_cube is refused", done.returncode != 0 and "Error initializing filter" in done.stderr, done.stderr)
+    light = np.repeat(np.linspace(0, 1, 64, dtype=np.float32)[None, :, None], 3, axis=2).repeat(8, axis=0)
+    truth = evaluate(test.command, light.reshape(-1, 3).astype(float), "hable").reshape(light.shape)
+    for lo, hi, is_read in ((0, 1, True), (0, 16, True), (-1, 1, False), (0, 0.5, False), (0.001, 16, False)):
+        what = f"lut1d, .cube of linear:{lo}:{hi}"
+        done = subprocess.run([test.command, "bake", "hable", "--1d", "--format", "cube", f"--input-encoding=linear:{lo}:{hi}",
+                               "-o", scratch / "linear.cube"], capture_output=True, text=True, check=True)
+        report.check(f"{what}: {'no warning' if is_read else 'one warning'}", done.stderr.count("warning: ") == (not is_read)
+                     and (is_read or f"linear.cube has the domain {lo} to {hi}, and ffmpeg" in done.stderr), done.stderr)
+        shown = through_ffmpeg(test, light, "lut1d=linear.cube:interp=linear")
+        inside = (light >= max(lo, 0.05)) & (light <= hi)
+        error = abs(shown - truth)[inside].max()
+        report.check(f"{what}: {'read' if is_read else 'misread'}, {error:.1e} from the operator", (error < 5e-4) == is_read)
+
+
+def check_bits(test):
+    """16-bit results are cut off, not rounded: half a code too dark. And 16 bits as float: swscale is off, zscale is not."""
+    codes = np.random.default_rng(7).integers(0, 65536, (64, 64, 3)).astype("<u2")
+    (test.scratch / "codes.raw").write_bytes(codes.tobytes())
+    (test.scratch / "darker.cube").write_text("LUT_3D_SIZE 2\n" + "".join(
+        f"{0.9 * r} {0.9 * g} {0.9 * b}\n" for b in (0, 1) for g in (0, 1) for r in (0, 1)))
+
+    def through(filter_, form):
+        run(*test.program, "-v", "error", "-nostdin", "-y", "-f", "rawvideo", "-pix_fmt", "rgb48le", "-s", "64x64", "-i",
+            "codes.raw", "-vf", filter_, "-pix_fmt", form, "-f", "rawvideo", "out.raw", folder=test.scratch)
+        return (test.scratch / "out.raw").read_bytes()
+
+    shown = np.frombuffer(through("lut3d=darker.cube", "rgb48le"), "<u2").reshape(codes.shape)
+    error = shown - 0.9 * codes.astype(float)
+    test.report.check(f"lut3d, 16 bits: from {error.min():.2f} to {error.max():.2f} of a code, mean {error.mean():.2f}",
+                      -1.01 < error.min() < -0.9 and error.max() < 0.01 and abs(error.mean() + 0.5) < 0.05)
+    for filter_, least, most in (("format=gbrpf32le", 1e-5, 1e-3), ("zscale,format=gbrpf32le", 0, 1e-7)):
+        if "zscale" in filter_ and "zscale" not in run(*test.program, "-v", "error", "-filters"):
+            print("skipped: zscale (ffmpeg has none)")
+            continue
+        g, b, r = np.frombuffer(through(filter_, "gbrpf32le"), "<f4").reshape(3, *codes.shape[:2])
+        error = abs(np.stack([r, g, b], axis=-1) - codes / 65535).max()
+        test.report.check(f"{filter_} of 16 bits: {error:.1e}", least <= error <= most)
 
 
 # ITU-R BT.2020-2, table 4, and BT.709-6, item 3.2: weights of R, G, B in luma. Limited range: item 3.5 of both.
@@ -153,7 +204,7 @@ def check_hdr10(test):
 
 def main(test):
     command, scratch = test.command, test.scratch
-    if " exr " not in run("ffmpeg", "-v", "error", "-encoders"):
+    if " exr " not in run(*test.program, "-v", "error", "-encoders"):
         skip("ffmpeg has no EXR encoder (older than 5.0)")
     run(command, "chart", "-o", scratch / "chart.exr", "--width", 768, "--height", 432)
     memorial = shared_picture("memorial.hdr")
@@ -172,15 +223,18 @@ def main(test):
     curve_stated = stated_errors(lines)["linear"][0]
     for name, rgb in [(p.name, read_rgb(p, scratch).astype(float)) for p in pictures] + [("random", None)]:
         codes = (random if rgb is None else acescct_encode(rgb @ to_ap1)).astype(np.float32)
-        graded = through_ffmpeg(codes, "lut3d=agx.cube:interp=tetrahedral", scratch)
+        graded = through_ffmpeg(test, codes, "lut3d=agx.cube:interp=tetrahedral")
         compare(test, f"lut3d, .cube 33 of ACEScct, {name}", codes, graded, cube, stated, tetrahedral,
                 acescct_decode, ("agx_sobotka", "--input", "lin_ap1"))
         codes = (random if rgb is None else log2_encode(rgb)).astype(np.float32)
-        graded = through_ffmpeg(codes, "lut1d=hable.cube:interp=linear", scratch)
+        graded = through_ffmpeg(test, codes, "lut1d=hable.cube:interp=linear")
         compare(test, f"lut1d, .cube 4096 of Hable, {name}", codes, graded, curve, curve_stated, linear,
                 log2_decode, ("hable",))
     check_modes(test)
-    check_hdr10(test)
+    check_limits(test)
+    check_bits(test)
+    if len(test.program) == 1:  # with ffprobe, and the command of `list --hosts`
+        check_hdr10(test)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,9 @@ namespace {
 
 constexpr const char* kSceneLinear = "scene-linear";
 
+/// Scene-linear, clipped at 1: ociobakelut writes a view of one curve for each channel as such a 1D
+/// table.
+constexpr const char* kClippedLinear = "linear:0:1";
 /// Encodings of common LUTs; log2 as here, in Blender's AgX and Filmic, and in T. Sobotka's AgX.
 constexpr const char* kEncodings[] = {"acescct",     "logc3",
                                       "logc4",       "slog3",
@@ -28,7 +31,8 @@ constexpr const char* kEncodings[] = {"acescct",     "logc3",
                                       "unreal_log",  "agx_log",
                                       "srgb",        "pq:100",
                                       "pq:203",      "log2:-10:6.5",
-                                      "log2:-10:15", "log2:-12.47393:4.026069"};
+                                      "log2:-10:15", "log2:-12.47393:4.026069",
+                                      kClippedLinear};
 constexpr const char* kDisplays[] = {"srgb", "rec1886", "g22", "display_p3", "rec2020", "linear"};
 
 struct Candidate {
@@ -148,7 +152,10 @@ std::vector<ResolvedOperator> all_and_defects() {
 /// operator differ, it counts as the operator's, and rounding must not decide against that.
 double rank(const LutMatch& match) {
     constexpr double kMargin = 1.5;
-    return match.definition->is_defect() ? kMargin * match.mean : match.mean;
+    // A table of all scene-linear colors is right up to 1, too.
+    constexpr double kMarginOfClipped = 10;
+    return match.mean * (match.definition->is_defect() ? kMargin : 1) *
+           (match.encoding == kClippedLinear ? kMarginOfClipped : 1);
 }
 
 /// With all colors.

@@ -48,6 +48,9 @@ NOT_RUN = {
     "g++ main.cpp": "the test install compiles and links programs so",
     "export OIIO_LIBRARY_PATH=": "a path of an installed plugin; the test clients.plugin runs the next commands",
     'oiiotool "shot.exr.tonewright': "needs that path",
+    'oiiotool --colorconfig ocio_config/config.ocio in.exr --ociodisplay Rec.2100-PQ "AgX - HDR 1000 nits" --cicp':
+        "needs oiiotool 3.1; the test clients.ocio_tools_newer runs it",
+    "OCIO=ocio_config/config-2.5.ocio oiiotool": "needs OpenColorIO 2.5; the test clients.ocio_tools_newer runs it",
     "iinfo -v": "needs that path",
     "idiff": "needs that path",
     "maketx": "needs that path",

@@ -53,11 +53,16 @@ constexpr std::array<std::string_view, 12> kForumIds = {
     "lin_p3d65_scene",    "srgb_rec709_display", "srgb_p3d65_display",  "g24_rec709_display",
     "g22_rec709_display", "pq_rec2020_display",  "hlg_rec2020_display", "pq_p3d65_display"};
 
+/// Id of a display that the forum's list lacks, in a namespace of Tonewright: OpenColorIO 2.6 calls
+/// a config compatible with HDR displays if every display has an id.
+constexpr std::string_view kOwnDisplayId = "g24_rec2020_display";
+
 /// Id of a linear space or a display: its name in the forum's list.
 template <class Item>
 std::string interop_id(const Item& item) {
     for (const std::string& alias : item.aliases) {
         if (std::find(kForumIds.begin(), kForumIds.end(), alias) != kForumIds.end()) return alias;
+        if (alias == kOwnDisplayId) return "tonewright:" + alias;
     }
     return "";
 }

@@ -37,8 +37,9 @@ struct ConfigModel {
         const Primaries* primaries = nullptr;  // linear spaces, logs, textures and displays
         const Display* display = nullptr;  // displays, and the display whose curve a texture has
         std::string style = {};            // of a builtin
-        /// Id of the Color Interop Forum, or with the prefix "ocio:" an id that only OpenColorIO's
-        /// configs have; empty if neither has one. Also an alias, for libraries before 2.5.
+        /// Id of the Color Interop Forum, or with a namespace an id of OpenColorIO's configs
+        /// ("ocio:") or of Tonewright; empty if there is none. Also an alias, for libraries
+        /// before 2.5.
         std::string interop_id = {};
         LogCurve curve = {};  // of a log
     };

@@ -33,7 +33,7 @@ VERSION = tuple(int(n) for n in ocio.GetVersion().split(".")[:2])
 ACES_20 = 4e-5
 # Color Interop Forum and OpenColorIO's own configs: the spaces that have an id, by their names in this config.
 INTEROP_IDS = {"sRGB": "srgb_rec709_display", "Display P3": "srgb_p3d65_display", "Rec.1886": "g24_rec709_display",
-               "Gamma 2.2": "g22_rec709_display", "Rec.2100-PQ": "pq_rec2020_display",
+               "Gamma 2.2": "g22_rec709_display", "Rec.2020": "tonewright:g24_rec2020_display", "Rec.2100-PQ": "pq_rec2020_display",
                "Rec.2100-HLG": "hlg_rec2020_display", "P3-D65 PQ": "pq_p3d65_display", "ACEScg": "lin_ap1_scene",
                "ACES2065-1": "lin_ap0_scene", "Linear Rec.709": "lin_rec709_scene",
                "Linear Rec.2020": "lin_rec2020_scene", "Linear P3-D65": "lin_p3d65_scene", "Non-Color": "data",
@@ -103,6 +103,32 @@ def check_ids(report, config):
     report.check("AMF ids of spaces", AMF + "v2.0:CSC.Academy.ACEScct_to_ACES.a2.v1" in ids.splitlines(), ids)
 
 
+def check_same_ids(report, config):
+    """The same interop ids as in OpenColorIO's own config: equal from 0 to 1; docs/config.md says what is below 0."""
+    theirs = ocio.Config.CreateFromBuiltinConfig("ocio://cg-config-latest")
+    linear = {"rec709": "lin_rec709_scene", "p3d65": "lin_p3d65_scene", "ap1": "lin_ap1_scene"}
+    ids = [space.getInteropID() for space in theirs.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL)]
+    ids = [id_ for id_ in ids if re.match(r"(ocio:)?(srgb|g22|g24|pq)_.*_(scene|display)$", id_) and config.getColorSpace(id_)]
+    wrong, below = [], {}
+    for id_ in ids:
+        for value in (-0.1, 0.001, 0.18, 0.5, 1):
+            pair = []
+            for one in (theirs, config):
+                start = linear[id_.split("_")[1]] if id_.endswith("_scene") else one.getRoleColorSpace("cie_xyz_d65_interchange")
+                white = [1, 1, 1] if id_.endswith("_scene") else [0.9504559, 1, 1.0890578]
+                light = [value * w for w in white]
+                pair.append(one.getProcessor(start, id_).getDefaultCPUProcessor().applyRGB(light)[1])
+            if value < 0:
+                below[id_] = [round(v, 3) for v in pair]
+            elif abs(pair[0] - pair[1]) > 3e-4:
+                wrong.append((id_, value, pair))
+    report.check(f"{len(ids)} interop ids of both configs: the same codes from 0 to 1", len(ids) >= 10 and not wrong, wrong)
+    wanted = {"g22_rec709_scene": [-0.1, 0], "srgb_rec709_scene": [-1.292, -1.292], "srgb_rec709_display": [-0.349, -1.292],
+              "g22_rec709_display": [-0.351, 0], "pq_rec2020_display": [-0.3, 0]}
+    found = {id_: below.get(id_) for id_ in wanted}
+    report.check("and below 0 what docs/config.md says", found == wanted, found)
+
+
 def check_text(report, folder):
     """Where the library cannot read 2.5: what is not in the other files is what 2.5 is for."""
     old = (folder / "config.ocio").read_text()
@@ -131,6 +157,19 @@ def check_text(report, folder):
     spaces = {space["name"]: space for part in ("colorspaces", "display_colorspaces") for _, space in b[part]}
     wrong = [name for name, id_ in INTEROP_IDS.items() if spaces[name].get("interop_id") != id_]
     report.check(f"profile 2.5 has {len(INTEROP_IDS)} interop ids", not wrong, wrong)
+    # OpenColorIO 2.6 calls a config compatible with HDR displays if it obeys these rules (its issue 2344).
+    views = [(display, kind, view) for display, all_views in b["displays"].items() for kind, view in all_views]
+    shared = {view["name"]: view for _, view in b["shared_views"]}
+    plain = [(display, name) for display, kind, names in views
+             for view in ([shared[name] for name in names] if kind == "Views" else [names]) for name in [view["name"]]
+             if not view.get("view_transform") and not spaces[view["colorspace"]].get("isdata")]
+    report.check("profile 2.5: every view has a view transform or is data", len(views) > 8 and not plain, plain)
+    bare = [display for display in b["displays"] if not spaces[display].get("interop_id") or not spaces[display].get("encoding")]
+    report.check("profile 2.5: every display has a space of its name, with interop id and encoding",
+                 not bare and "cie_xyz_d65_interchange" in b["roles"], bare)
+    unnamed = [name for name, space in spaces.items() if space.get("interop_id") not in (None, name, "data",
+                                                                                          *space.get("aliases", []))]
+    report.check("profile 2.5: every interop id is an alias", not unnamed, unnamed)
     transforms = {transform["name"]: transform for _, transform in b["view_transforms"]}
     shown = {(view["name"], display): view["view_transform"] for display, views in b["displays"].items()
              for kind, view in views if kind == "View"}
@@ -183,6 +222,7 @@ def main():
         report.check(f"{name} is used without a word", not lines, lines[:3])
         if version == (2, 5):
             check_ids(report, config)
+            check_same_ids(report, config)
     first = said["config.ocio"]
     differ = [(name, part) for name, others in said.items() for part in first if others[part] != first[part]]
     report.check("scene light is converted to a display as it is",

@@ -61,7 +61,7 @@ BRITISH = {
 ALLOWED = [
     ("bake --help-all", "Formats: cube,", "the name of a format"),
     ("--help-all", "unpremult", "the one explanation of un-premultiply"),
-    ("docs/operators.md", "lattice or formula", "the values of a parameter"),
+    ("docs/operators/agx_blender.md", "lattice or formula", "the values of a parameter"),
 ]
 
 

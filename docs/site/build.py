@@ -70,26 +70,14 @@ class Site:
         self.folder = folder
         listed = json.loads(run(command, "list", "--json"))
         self.operators = {op["id"]: op for op in listed["operators"] + listed["local_operators"]}
-        self.sections, self.dialects, self.index = self.read_catalogue()
-
-    def read_catalogue(self):
-        """docs/operators.md by operator; the part on dialects; what comes before all."""
-        text = (ROOT / "docs/operators.md").read_text()
-        text, dialects = text.split("\n## Dialects\n", 1)
-        index, *rest = re.split(r'(?m)^<a id="(\w+)"></a>\n', text)
-        sections = dict(zip(rest[::2], rest[1::2]))
-        if set(sections) != set(self.operators):
-            raise SystemExit(f"docs/operators.md and the command differ in {sorted(set(sections) ^ set(self.operators))}; "
-                             "`./run artifacts` writes the page")
-        return sections, "# Dialects\n" + dialects.replace("\n### ", "\n## "), index
+        self.dialects = (ROOT / "docs/operators/dialects.md").read_text()
+        pages = {path.stem for path in (ROOT / "docs/operators").glob("*.md")} - {"dialects"}
+        if pages != set(self.operators):
+            raise SystemExit(f"docs/operators/ and the command differ in {sorted(pages ^ set(self.operators))}; "
+                             "`./run artifacts` writes the pages")
 
     def target(self, path, anchor):
         """Page or file of the site for a path of the project; None if the site does not have it."""
-        if path == "docs/operators.md" and anchor:
-            if anchor in self.operators:
-                return f"operators/{anchor}.md", ""
-            if anchor.startswith("dialects"):
-                return "operators/dialects.md", "" if anchor == "dialects" else anchor
         if path in MOVED:
             return MOVED[path], anchor
         if path.startswith("docs/") and (ROOT / path).is_file():
@@ -141,16 +129,15 @@ class Site:
         sources = ["README.md", "luts/README.md", "ocio_config/README.md",
                    *(str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").rglob("*.md")))]
         for source in sources:
-            if source != "docs/operators.md":
-                page = MOVED.get(source, source.removeprefix("docs/"))
-                text = (ROOT / source).read_text()
-                if source == "luts/README.md":
-                    # The files are too large for the site.
-                    text = text.replace("# LUTs", "# Shipped LUTs", 1).replace(
-                        "Click the picture in your application's column.", "The files are in the folder `luts/` of the project.", 1)
-                self.write(page, self.relink(text, source, page))
-        self.write("operators/index.md", self.relink(self.index, "docs/operators.md", "operators/index.md"))
-        self.write("operators/dialects.md", self.relink(self.dialects, "docs/operators.md", "operators/dialects.md"))
+            if pathlib.Path(source).parent == pathlib.Path("docs/operators") and pathlib.Path(source).stem in self.operators:
+                continue  # write_operator() has more
+            page = MOVED.get(source, source.removeprefix("docs/"))
+            text = (ROOT / source).read_text()
+            if source == "luts/README.md":
+                # The files are too large for the site.
+                text = text.replace("# LUTs", "# Shipped LUTs", 1).replace(
+                    "Click the picture in your application's column.", "The files are in the folder `luts/` of the project.", 1)
+            self.write(page, self.relink(text, source, page))
         shutil.copy(HERE / "site.css", self.folder / "site.css")
 
     def write_operators(self):
@@ -165,21 +152,22 @@ class Site:
 
     def write_operator(self, op, errors):
         page = f"operators/{op['id']}.md"
+        source = "docs/" + page
         self.write(page, "\n\n".join(part for part in (
             f"# {op['title']}",
             f"`{op['id']}`: {op['character']}.",
             f"![Test chart with {op['title']}]({op['id']}.png)",
             commands(op),
-            self.relink(self.curve(op), "docs/operators.md", page),
+            self.relink(self.curve(op), source, page),
             parameters(op),
             self.formula(op),
-            self.relink(self.differences(op), "docs/operators.md", page),
+            self.relink(self.differences(op), source, page),
             errors.of(op),
         ) if part) + "\n")
 
     def curve(self, op):
-        """Plot and facts of the catalogue, without its heading and its table of parameters."""
-        section = self.sections[op["id"]]
+        """Plot and facts of the catalogue's page, without its heading, parameters and links."""
+        section = (ROOT / f"docs/operators/{op['id']}.md").read_text().split("\nMore: ")[0]
         section = section[section.index("!["):] if "![" in section else section[section.index("\n* ") + 1:]
         return "## Curve and facts\n\n" + section.split("\n| parameter |")[0].strip()
 
@@ -222,10 +210,10 @@ class Site:
             return ""
         text = [f"## Differences from other {op['dialects']} operators", "",
                 "Differences in 8-bit code values and in ΔE ITP, over the sample set. "
-                "[Dialects](operators.md#dialects) has presets, too, and explains the figures.", "",
+                "[Dialects](dialects.md) has presets, too, and explains the figures.", "",
                 "| operator | max | 99.9 % | mean | ΔE ITP max | ΔE ITP mean |", "|---|---|---|---|---|---|"]
         for _, other, figures in sorted(rows):
-            text.append(f"| [{self.operators[other]['title']}](operators.md#{other}) | {' | '.join(figures)} |")
+            text.append(f"| [{self.operators[other]['title']}]({other}.md) | {' | '.join(figures)} |")
         return "\n".join(text)
 
 

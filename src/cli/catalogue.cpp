@@ -409,6 +409,16 @@ std::string family_of(const Operator& op) {
                                                            : "Operators that mix channels";
 }
 
+/// Page and anchor of a group.
+std::string dialects_page(const DialectGroup& group) {
+    return fmt::format("dialects.md#dialects_{}", group.slug);
+}
+
+/// Name of an operator in the index. Links to the index may name it as an anchor.
+std::string index_cell(const Operator& op) {
+    return fmt::format("<a id=\"{0}\"></a>[{1}](operators/{0}.md)<br>`{0}`", op.id, cell(op.title));
+}
+
 std::string index_section(const std::vector<DialectGroup>& groups) {
     std::map<std::string, std::vector<const Operator*>> families;
     for (const Operator& op : all_operators())
@@ -421,30 +431,29 @@ std::string index_section(const std::vector<DialectGroup>& groups) {
                              "Operators that adapt to the picture", "Diagnostic"}) {
         if (families.count(name)) order.emplace_back(name);
     }
-    std::string text =
-        "## Index\n\n| operator | character | 0.18 \u2192 | 1 \u2192 |\n|---|---|---|---|\n";
+    std::string text = "| operator | character | 0.18 \u2192 | 1 \u2192 |\n|---|---|---|---|\n";
     for (const std::string& family : order) {
         const auto group = std::find_if(groups.begin(), groups.end(),
                                         [&](const DialectGroup& g) { return g.name == family; });
-        text += fmt::format(
-            "| **{}** | {} | | |\n", cell(family),
-            group == groups.end() ? "" : fmt::format("[differences](#dialects_{})", group->slug));
+        if (group == groups.end()) {
+            text += fmt::format("| **{}** | | | |\n", cell(family));
+        } else {
+            text += fmt::format("| <a id=\"dialects_{0}\"></a>**{1}** | [differences]({2}) | | |\n",
+                                group->slug, cell(family), "operators/" + dialects_page(*group));
+        }
         for (const Operator* op : families[family]) {
             const View view = srgb_view(op->id);
-            text += fmt::format("| [{}](#{})<br>`{}` | {} | {:.3f} | {:.3f} |\n", cell(op->title),
-                                op->id, op->id, cell(op->character), gray_code(view, kMidGray),
-                                gray_code(view, 1));
+            text += fmt::format("| {} | {} | {:.3f} | {:.3f} |\n", index_cell(*op),
+                                cell(op->character), gray_code(view, kMidGray), gray_code(view, 1));
         }
     }
     text += "| **Local: pictures only** | [local operators](local.md) | | |\n";
-    for (const Operator& op : local_operators()) {
-        text += fmt::format("| [{}](#{})<br>`{}` | {} | | |\n", cell(op.title), op.id, op.id,
-                            cell(op.character));
-    }
+    for (const Operator& op : local_operators())
+        text += fmt::format("| {} | {} | | |\n", index_cell(op), cell(op.character));
     return text + "\n";
 }
 
-std::string link_to(const Dialect& d) { return fmt::format("[`{}`](#{})", d.name, d.op); }
+std::string link_to(const Dialect& d) { return fmt::format("[`{}`]({}.md)", d.name, d.op); }
 
 std::string pair_table(const DialectGroup& group, std::vector<Distance> distances) {
     // Compare the printed digits, so that rounding of doubles does not change the order.
@@ -491,8 +500,8 @@ std::string distance_matrix(const DialectGroup& group, const std::vector<Distanc
 std::string dialect_section(DialectGroup& group, const std::vector<float>& samples) {
     const std::vector<Distance> distances = distances_of(group, samples);
     std::string text = fmt::format(
-        "<a id=\"dialects_{0}\"></a>\n\n### {1}\n\n![Gray curves of {1}]"
-        "(curves/dialects_{0}.svg)\n\n![Colors of {1}](curves/dialects_{0}_colors.svg)\n\n"
+        "<a id=\"dialects_{0}\"></a>\n\n## {1}\n\n![Gray curves of {1}]"
+        "(../curves/dialects_{0}.svg)\n\n![Colors of {1}](../curves/dialects_{0}_colors.svg)\n\n"
         "|  | dialect |  | 0.18 \u2192 | 1 \u2192 | 4 \u2192 |\n|---|---|---|---|---|---|\n",
         group.slug, group.name);
     for (const Dialect& d : group.dialects) {
@@ -521,11 +530,12 @@ std::string dialect_section(DialectGroup& group, const std::vector<float>& sampl
 
 constexpr const char* kIntroduction =
     "# Operators\n\n"
-    "[Dialects](#dialects) compares operators that share a name, and [How to read the "
-    "plots](#how-to-read-the-plots) explains the\nfigures. `./run artifacts` generates this "
-    "page.\n\n";
+    "Each operator has a page with its plot, parameters and source. The two figures are sRGB code "
+    "values of scene-linear 0.18 (mid\ngray) and 1 (diffuse white). <a "
+    "id=\"dialects\"></a>[Dialects](operators/dialects.md) compares operators that share a name.\n"
+    "`./run artifacts` generates these pages.\n\n";
 
-/// Between the index and the operators.
+/// Below the index.
 std::string legend() {
     return fmt::format(
         "## How to read the plots\n\n"
@@ -554,10 +564,11 @@ std::string legend() {
 
 std::string dialect_introduction(std::size_t sample_count) {
     return fmt::format(
-        "## Dialects\n\n"
+        "# Dialects\n\n"
         "Operators of one name that show different pictures, and their presets. Looks are left "
         "out, because they are meant to differ. The\ndifference of two dialects is measured on "
-        "the {} colors of the [sample set](conventions.md) without negative channels, in\nlinear "
+        "the {} colors of the [sample set](../conventions.md) without negative channels, "
+        "in\nlinear "
         "Rec.709, on an sRGB display.\n\n"
         "The first columns are differences in 8-bit code values (code value \u00d7 255), of the "
         "worst channel of each color. \u0394E ITP (ITU-R BT.2124,\nwhite at 100 cd/m\u00b2) is "
@@ -567,57 +578,90 @@ std::string dialect_introduction(std::size_t sample_count) {
         sample_count);
 }
 
+/// Last line of an operator's page.
+std::string links_of(const Operator& op, const std::vector<DialectGroup>& groups) {
+    std::string text = "More: [all operators](../operators.md)";
+    text += op.is_local() ? ", [local operators](../local.md)"
+                          : ", [how to read the plot](../operators.md#how-to-read-the-plots)";
+    const auto group = std::find_if(groups.begin(), groups.end(),
+                                    [&](const DialectGroup& g) { return g.name == op.dialects; });
+    if (!op.is_local() && group != groups.end()) {
+        text += fmt::format(", [differences from other {} operators]({})", group->name,
+                            dialects_page(*group));
+    }
+    return text + ".\n";
+}
+
+/// The text with one line break at its end.
+std::string with_one_end(std::string text) {
+    while (text.size() > 1 && text[text.size() - 2] == '\n')
+        text.pop_back();
+    return text;
+}
+
 }  // namespace
 
 std::vector<GeneratedFile> make_catalogue() {
     std::vector<GeneratedFile> files;
-    std::string manifest = "path,shows\n";
-    const auto add = [&](const std::string& name, const std::string& shows, std::string svg) {
+    std::string plots = "path,shows\n";
+    std::string pages = "path,shows\n";
+    const auto add_plot = [&](const std::string& name, const std::string& shows, std::string svg) {
         files.push_back({"curves/" + name, std::move(svg)});
-        manifest += fmt::format("{},{}\n", name, shows);
+        plots += fmt::format("{},{}\n", name, shows);
+    };
+    const auto add_page = [&](const std::string& name, const std::string& shows, std::string text) {
+        files.push_back({"operators/" + name, with_one_end(std::move(text))});
+        pages += fmt::format("{},{}\n", name, shows);
     };
     std::vector<DialectGroup> groups = dialect_groups();
-    std::string page = kIntroduction + index_section(groups) + legend();
     for (const Operator& op : all_operators()) {
-        add(op.id + ".svg", op.id, to_svg(plot_of(op)));
-        const std::string plot_and_figures =
-            fmt::format("![Curve of {}](curves/{}.svg)\n\n{}", op.title, op.id, measured_line(op));
-        page += fmt::format("<a id=\"{}\"></a>\n\n", op.id) +
-                operator_section(op, plot_and_figures, true);
+        add_plot(op.id + ".svg", op.id, to_svg(plot_of(op)));
+        add_page(op.id + ".md", op.id,
+                 operator_section(op,
+                                  fmt::format("![Curve of {}](../curves/{}.svg)\n\n{}", op.title,
+                                              op.id, measured_line(op)),
+                                  true) +
+                     links_of(op, groups));
     }
     for (const Operator& op : local_operators())
-        page += fmt::format("<a id=\"{}\"></a>\n\n", op.id) + operator_section(op);
+        add_page(op.id + ".md", op.id, operator_section(op, {}, true) + links_of(op, groups));
     if (!groups.empty()) {
         const std::vector<float> samples = non_negative_samples();
-        page += dialect_introduction(samples.size() / 3);
+        std::string page = dialect_introduction(samples.size() / 3);
         for (DialectGroup& group : groups) {
-            add("dialects_" + group.slug + ".svg", group.name, to_svg(plot_of(group)));
-            add("dialects_" + group.slug + "_colors.svg", group.name, to_svg(colors_of(group)));
+            add_plot("dialects_" + group.slug + ".svg", group.name, to_svg(plot_of(group)));
+            add_plot("dialects_" + group.slug + "_colors.svg", group.name,
+                     to_svg(colors_of(group)));
             page += dialect_section(group, samples);
         }
+        add_page("dialects.md", "dialects", page);
     }
-    while (page.size() > 1 && page[page.size() - 2] == '\n')
-        page.pop_back();
-    files.push_back({"curves/MANIFEST.csv", manifest});
-    files.push_back({"operators.md", page});
+    files.push_back({"curves/MANIFEST.csv", plots});
+    files.push_back({"operators/MANIFEST.csv", pages});
+    files.push_back(
+        {"operators.md", with_one_end(kIntroduction + index_section(groups) + legend())});
     return files;
 }
 
 void write_catalogue(const std::string& folder) {
-    // The manifest lies beside the plots, because the folder of documents has other files, too.
-    const std::string plots = "curves/";
-    require_writable_folder(folder + "/curves");
-    std::vector<GeneratedFile> curves;
-    std::string page;
+    // Each subfolder has its own manifest, because the folder of documents has other files, too.
+    std::map<std::string, std::vector<GeneratedFile>> subfolders;
+    std::vector<GeneratedFile> index;
+    for (const char* name : {"/curves", "/operators"})
+        require_writable_folder(folder + name);
     for (GeneratedFile& file : make_catalogue()) {
-        if (file.path.starts_with(plots)) {
-            curves.push_back({file.path.substr(plots.size()), std::move(file.contents)});
+        const std::size_t slash = file.path.find('/');
+        if (slash == std::string::npos) {
+            index.push_back(std::move(file));
         } else {
-            page = std::move(file.contents);
+            subfolders[file.path.substr(0, slash)].push_back(
+                {file.path.substr(slash + 1), std::move(file.contents)});
         }
     }
-    write_generated_files(folder + "/curves", curves, "MANIFEST.csv");
-    write_text_atomically(folder + "/operators.md", page);
+    for (const auto& [name, files] : subfolders)
+        write_generated_files(folder + "/" + name, files, "MANIFEST.csv");
+    for (const GeneratedFile& file : index)
+        write_text_atomically(folder + "/" + file.path, file.contents);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -10,19 +10,21 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// An operator as a section of a Markdown page: character, facts, parameters, presets, looks.
+/// An operator as Markdown: character, facts, parameters, presets, looks.
 /// @param after_character  lines after the sentence about its character
-/// @param is_in_docs       the page is beside choosing.md, which explains the parameters that all
-///                         tone curves share
+/// @param is_page          a page of docs/operators/, with a heading of the first level. It links
+/// to
+///                         choosing.md, which explains the parameters that all tone curves share.
 [[nodiscard]] std::string operator_section(const Operator& op,
                                            std::string_view after_character = {},
-                                           bool is_in_docs = false);
+                                           bool is_page = false);
 
-/// The operator catalogue: `operators.md`, and in `curves/` a plot of every operator and of every
-/// group of dialects, with a MANIFEST.csv. The same bytes on every run.
+/// The operator catalogue: the index `operators.md`; in `operators/` a page for each operator and
+/// one for the dialects; in `curves/` a plot of every operator and of every group of dialects. Both
+/// folders have a MANIFEST.csv. The same bytes on every run.
 [[nodiscard]] std::vector<GeneratedFile> make_catalogue();
 
-/// Writes the page, and removes plots in `folder`/curves that are no longer used.
+/// Writes the catalogue, and removes the pages and plots of operators that are gone.
 /// @throws FileError
 void write_catalogue(const std::string& folder);
 

@@ -196,10 +196,10 @@ std::string_view link_to_choosing(const Operator& op, std::string_view parameter
     };
     if (!has("apply") || !has("color_correction")) return {};
     if (parameter == "apply")
-        return "[how the curve treats color](choosing.md#how-a-curve-treats-color)";
+        return "[how the curve treats color](../choosing.md#how-a-curve-treats-color)";
     const bool is_shared = parameter == "color_correction" || parameter == "saturation" ||
                            parameter == "saturation_from";
-    return is_shared ? "[color correction](choosing.md#color-correction)" : "";
+    return is_shared ? "[color correction](../choosing.md#color-correction)" : "";
 }
 
 /// "AgX; others: agx_minimal, agx_sobotka".
@@ -308,13 +308,12 @@ void print_inputs() {
 
 }  // namespace
 
-std::string operator_section(const Operator& op, std::string_view after_character,
-                             bool is_in_docs) {
+std::string operator_section(const Operator& op, std::string_view after_character, bool is_page) {
     std::string character = op.character;
     if (!character.empty() && character[0] >= 'a' && character[0] <= 'z')
         character[0] = static_cast<char>(character[0] - 'a' + 'A');
-    std::string text =
-        fmt::format("## {} (`{}`)\n\n{}.\n\n{}", op.title, op.id, character, after_character);
+    std::string text = fmt::format("{} {} (`{}`)\n\n{}.\n\n{}", is_page ? "#" : "##", op.title,
+                                   op.id, character, after_character);
     text += fmt::format("* Source: {} ({})\n* Works in: {}; output: {}\n* Negatives: {}\n",
                         op.source, op.license, op.working.name, output_of(op), op.negatives);
     text += op.is_local() ? fmt::format("* Local: {}\n", kLocal)
@@ -326,7 +325,7 @@ std::string operator_section(const Operator& op, std::string_view after_characte
     if (!op.parameters.empty()) {
         text += "\n| parameter | default | range | |\n|---|---|---|---|\n";
         for (const ParameterSpec& p : op.parameters) {
-            const std::string_view link = is_in_docs ? link_to_choosing(op, p.name) : "";
+            const std::string_view link = is_page ? link_to_choosing(op, p.name) : "";
             text += fmt::format("| `{}` | {} | {} | {} |\n", p.name, default_of(p), range_of(p),
                                 link.empty() ? help_of(p) : link);
         }
@@ -510,7 +509,8 @@ void add_list(CommandLine& program) {
     hosts.group(contents);
     command
         .add("--catalogue", options->catalogue,
-             "write operators.md and curves/, with a plot of every operator, into this folder")
+             "write operators.md, operators/ and curves/ into this folder: a page and a plot of "
+             "each operator")
         .value("FOLDER")
         .group(format)
         .excludes(json)

@@ -191,63 +191,77 @@ class Plot:
 def variants_of(operator):
     """(id of the line, arguments of eval, words that the page must have)."""
     name = operator["id"]
-    yield "default", [name], f'<a id="{name}"></a>'
+    yield "default", [name], f"(`{name}`)"
     for preset in operator["presets"]:
         yield preset["id"], [f"{name}:{preset['id']}"], f"`{name}:{preset['id']}`"
     for look in operator["looks"]:
         yield "look-" + look["id"], [name, "--look", look["id"]], f"* Look `{look['id']}`"
 
 
-def section(page, name):
-    """The part of the page that belongs to an anchor."""
-    start = page.index(f'<a id="{name}"></a>')
-    end = page.find("<a id=", start + 1)
-    return page[start:end if end > 0 else len(page)]
+def read_pages(folder):
+    """Texts by name: the index, each operator's page, and the part of each group of dialects."""
+    pages = {path.stem: path.read_text() for path in (folder / "operators").glob("*.md")}
+    parts = re.split(r'^<a id="(dialects_\w+)"></a>\n', pages.get("dialects", ""), flags=re.M)
+    return {"index": (folder / "operators.md").read_text(), **pages, **dict(zip(parts[1::2], parts[2::2]))}
 
 
 def slug(name):
     return re.sub("[^a-z0-9]+", "_", name.lower()).strip("_")
 
 
-def check_page(report, folder, operators, groups):
-    page = (folder / "operators.md").read_text()
-    index = page[page.index("## Index"):page.index('<a id="')]
-    bad = []
+def check_pages(report, folder, operators, groups):
+    pages = read_pages(folder)
+    index, bad = pages["index"], []
     for op in operators:
         name = op["id"]
-        text = section(page, name) if f'<a id="{name}"></a>' in page else ""
-        wanted = [f"## {op['title']} (`{name}`)", op["character"][0].upper() + op["character"][1:], op["source"], op["license"], op["negatives"],
-                  op["output"], op["working_primaries"], f"`{op['view']}`", f"(curves/{name}.svg)",
-                  "* Measured on sRGB"]
+        text = pages.get(name, "")
+        wanted = [f"# {op['title']} (`{name}`)\n", op["character"][0].upper() + op["character"][1:], op["source"], op["license"], op["negatives"],
+                  op["output"], op["working_primaries"], f"`{op['view']}`", f"(../curves/{name}.svg)",
+                  "* Measured on sRGB", "(../operators.md)"]
         wanted += op["warnings"] + [f"| `{p['name']}` |" for p in op["parameters"]]
         wanted += [words for _, _, words in variants_of(op)]
         bad += [f"{name}: {words}" for words in wanted if words not in text]
-        if not re.search(rf"^\| \[[^\n]*\]\(#{name}\)<br>`{name}` \| .* \| \d\.\d+ \| \d\.\d+ \|$", index, re.M):
+        row = rf'^\| <a id="{name}"></a>\[[^\n]*\]\(operators/{name}\.md\)<br>`{name}` \| .* \| \d\.\d+ \| \d\.\d+ \|$'
+        if not re.search(row, index, re.M):
             bad.append(f"{name}: its row of the index")
-    report.check(f"the page has all about {len(operators)} operators", not bad, bad[:5])
+    report.check(f"the pages have all about {len(operators)} operators", not bad, bad[:5])
     bad = []
     for name, members in groups.items():
-        text = section(page, f"dialects_{slug(name)}") if f'"dialects_{slug(name)}"' in page else ""
+        text = pages.get(f"dialects_{slug(name)}", "")
         names = [words for op in members for words in [op["id"], *(f"{op['id']}:{p['id']}" for p in op["presets"])]]
-        wanted = [f"### {name}\n", f"(curves/dialects_{slug(name)}.svg)", f"(curves/dialects_{slug(name)}_colors.svg)"]
-        wanted += [f"[`{n}`](#{n.split(':')[0]})" for n in names]
+        wanted = [f"## {name}\n", f"(../curves/dialects_{slug(name)}.svg)", f"(../curves/dialects_{slug(name)}_colors.svg)"]
+        wanted += [f"[`{n}`]({n.split(':')[0]}.md)" for n in names]
         bad += [f"{name}: {words}" for words in wanted if words not in text]
         pairs = len(re.findall(r"^\| \w+ `[^`]+`, \w+ `[^`]+` \|", text, re.M))
         if pairs != len(names) * (len(names) - 1) // 2:
             bad.append(f"{name}: {pairs} pairs of {len(names)} dialects")
-        if f"(#dialects_{slug(name)})" not in index:
+        anchor = f"dialects_{slug(name)}"
+        if f'<a id="{anchor}"></a>**{name}** | [differences](operators/dialects.md#{anchor})' not in index:
             bad.append(f"{name}: its row of the index")
     report.check(f"the page has all about {len(groups)} groups of dialects", not bad, bad[:5])
-    links = set(re.findall(r"\]\(#([^)]+)\)", page))
-    headings = re.findall(r"^#+ ([\w ]+)$", page, re.M)  # of words alone, whose ids are plain
-    anchors = {*re.findall(r'<a id="([^"]+)"', page), *(heading.lower().replace(" ", "-") for heading in headings)}
-    report.check(f"{len(links)} links within the page have their end", links <= anchors, sorted(links - anchors)[:5])
-    linked = {folder / path for path in re.findall(r"\]\((curves/[^)]+)\)", page)}
-    plots = set((folder / "curves").glob("*.svg"))
-    report.check("every plot is on the page, and no other", linked == plots, sorted(linked ^ plots)[:5])
+    paths = [folder / "operators.md", *sorted((folder / "operators").glob("*.md"))]
+    anchors = {path: {*re.findall(r'<a id="([^"]+)"', path.read_text()), *(
+        heading.lower().replace(" ", "-") for heading in re.findall(r"^#+ ([\w ]+)$", path.read_text(), re.M))} for path in paths}
+    links, lost, plots = 0, [], set((folder / "curves").glob("*.svg"))
+    linked = set()
+    for path in paths:
+        for address in re.findall(r"\]\(([^):]+)\)", path.read_text()):
+            name, _, anchor = address.partition("#")
+            target = (path.parent / name).resolve() if name else path
+            links += 1
+            if target.suffix == ".svg":
+                linked.add(target)
+            elif target in anchors:
+                lost += [f"{path.name}: {address}"] if anchor and anchor not in anchors[target] else []
+            elif not (PROJECT / "docs" / target.relative_to(folder)).exists():  # a page that is not generated
+                lost.append(f"{path.name}: {address}")
+    report.check(f"{links} links of the pages lead somewhere", links > len(operators) and not lost, lost[:5])
+    report.check("every plot is on a page, and no other", linked == plots, sorted(linked ^ plots)[:5])
+    manifest = [line.split(",")[0] for line in (folder / "operators" / "MANIFEST.csv").read_text().splitlines()[1:]]
+    report.check("the manifest names the pages", sorted(manifest) == sorted(path.name for path in paths[1:]))
     # Looks and presets that are meant to differ are not dialects, and an operator alone is none.
-    report.check("as many groups as there are", len(re.findall('<a id="dialects_', page)) == len(groups))
-    return page
+    report.check("as many groups as there are", len(re.findall('<a id="dialects_', pages["dialects"])) == len(groups))
+    return pages
 
 
 def check_files(report, folder, operators, groups):
@@ -306,11 +320,11 @@ def of_scene(stops, color):
     return scene(stops)[:, None] * color
 
 
-def check_operator(report, command, folder, page, operator):
+def check_operator(report, command, folder, pages, operator):
     """Every line and patch of a plot, and the figures of its row and section."""
     name = operator["id"]
     plot = Plot(folder / "curves" / f"{name}.svg")
-    text = section(page, name)
+    text = pages[name]
     problems = [] if "default" in plot.lines else ["has no line `default`"]
     grid = np.linspace(-10, 10, 541)  # half a pixel apart, twice: what a line knows
     whole = np.arange(-10, 11)
@@ -373,7 +387,7 @@ def check_operator(report, command, folder, page, operator):
         off = max(off, np.abs(shown - 255 * codes).max())
     report.check(f"{name}: patches", len(plot.patches()) == 3 and off <= 0.5 + DIGITS, f"{off} codes of 8 bits")
 
-    row = re.search(rf"^\|.*\(#{name}\)<br>.* \| (\S+) \| (\S+) \|$", page, re.M)
+    row = re.search(rf"^\|.*\(operators/{name}\.md\)<br>.* \| (\S+) \| (\S+) \|$", pages["index"], re.M)
     figures = np.array([*row.groups(), *measured.groups()], float)
     report.bound(f"{name}: figures of the text", np.abs(figures - [*gray_level(known)] * 2).max(), 5e-4 + DIGITS)
     for (words, _, level), (low, high) in zip(ends, gray_level(sides).reshape(-1, 2)):
@@ -394,10 +408,10 @@ def check_formulas(report, folder):
             report.bound(f"{name}: the formula, {channel}", np.abs(values - shown).max() * unit, POINT)
 
 
-def check_group(report, command, folder, page, group, members):
+def check_group(report, command, folder, pages, group, members):
     """Lines, patches, rows of one group of dialects."""
     names = [f"{op['id']}{preset}" for op in members for preset in ["", *(":" + p["id"] for p in op["presets"])]]
-    text = section(page, f"dialects_{slug(group)}")
+    text = pages[f"dialects_{slug(group)}"]
     plot = Plot(folder / "curves" / f"dialects_{slug(group)}.svg")
     chart = Plot(folder / "curves" / f"dialects_{slug(group)}_colors.svg")
     letters = dict(re.findall(r"^\| \*\*(\w+)\*\* \| \[`([^`]+)`\]", text, re.M))
@@ -435,10 +449,10 @@ def check_group(report, command, folder, page, group, members):
     report.check(f"{group}: patches", off <= 0.5 + DIGITS, f"{off} codes of 8 bits")
 
 
-def check_distances(report, command, page, group, a, b):
+def check_distances(report, command, pages, group, a, b):
     """Figures of a pair, recomputed: own samples, `tonewright eval`, own dE ITP."""
     samples = non_negative_samples()
-    count = int(re.search(r"measured on the (\d+) colors", page)[1])
+    count = int(re.search(r"measured on the (\d+) colors", pages["dialects"])[1])
     # Colors on the hull of a wide gamut: rounding decides which have a channel below 0.
     report.bound("distances: as many samples", abs(count - len(samples)) / len(samples), 1e-4)
     code = [evaluate(command, samples, name) for name in (a, b)]
@@ -446,7 +460,7 @@ def check_distances(report, command, page, group, a, b):
     delta_e = 720 * np.linalg.norm(itp(code[0]) - itp(code[1]), axis=1)
     expected = [difference.max(), np.percentile(difference, 99.9), difference.mean(), delta_e.max(), delta_e.mean()]
     found = re.search(rf"^\| \w+ `{a}`, \w+ `{b}` \| (\S+) \| (\S+) \| (\S+) \| (\S+) \| (\S+) \|$",
-                      section(page, f"dialects_{slug(group)}"), re.M)
+                      pages[f"dialects_{slug(group)}"], re.M)
     for what, shown, value, digit in zip(("max", "99.9 %", "mean", "dE max", "dE mean"), map(float, found.groups()),
                                          expected, (0.1, 0.1, 0.01, 0.1, 0.01)):
         # Half of the last digit, and the few samples that may be others.
@@ -461,8 +475,11 @@ def check_committed(report, folder):
         print("skipped: docs/curves is not in the source folder; `./run artifacts` writes it")
         return
     compare_folder(report, committed / "curves", folder / "curves")
-    difference = page_differs(*((path / "operators.md").read_text() for path in (committed, folder)))
-    report.check("docs/operators.md", difference is None, difference)
+    names = {path.name for side in (committed, folder) for path in (side / "operators").iterdir()}
+    for name in ["operators.md", *(f"operators/{name}" for name in sorted(names))]:
+        texts = [(side / name).read_text() if (side / name).is_file() else "" for side in (committed, folder)]
+        difference = page_differs(*texts) if all(texts) else f"is only in {'the command' if texts[1] else 'docs/'}"
+        report.check(f"docs/{name}", difference is None, difference)
 
 
 def check_errors(report, command, scratch):
@@ -492,20 +509,24 @@ def main():
         groups.setdefault(op["dialects"], []).append(op)
     groups = {name: members for name, members in groups.items() if name and len(members) > 1}
     with tempfile.TemporaryDirectory(prefix="tonewright-") as scratch, ThreadPoolExecutor() as pool:
-        folder = Path(scratch) / "docs"
+        folder = Path(scratch).resolve() / "docs"
         curves = folder / "curves"
         curves.mkdir(parents=True)
         (curves / "MANIFEST.csv").write_text("path,shows\nold.svg,old\n")
         (curves / "old.svg").write_text("of an operator that is gone")
         (curves / "own.txt").write_text("of somebody else")
+        (folder / "operators").mkdir()
+        (folder / "operators" / "MANIFEST.csv").write_text("path,shows\nold.md,old\n")
+        (folder / "operators" / "old.md").write_text("of an operator that is gone")
         (folder / "MANIFEST.csv").write_text("path\nown.md\n")
         (folder / "own.md").write_text("of somebody else")
         run(command, "list", "--catalogue", folder)
-        report.check("a plot of an operator that is gone is removed, nothing else", not (curves / "old.svg").exists()
+        report.check("page and plot of an operator that is gone are removed, nothing else", not (curves / "old.svg").exists()
+                     and not (folder / "operators" / "old.md").exists()
                      and (curves / "own.txt").exists() and (folder / "own.md").exists())
         (curves / "own.txt").unlink()
         check_committed(report, folder)
-        page = check_page(report, folder, operators, groups)
+        pages = check_pages(report, folder, operators, groups)
         check_files(report, folder, operators, groups)
         check_formulas(report, folder)
         check_errors(report, command, Path(scratch))
@@ -515,7 +536,7 @@ def main():
         def run_job(job):
             check, what, arguments = job
             try:
-                check(report, command, folder, page, *arguments)
+                check(report, command, folder, pages, *arguments)
             except Exception as error:  # what is looked for is not there
                 report.check(what, False, repr(error))
 
@@ -525,7 +546,7 @@ def main():
         if not share_of([*[False] * 2, True], 3)[0]:
             return report.finish()
         group = "AgX" if "AgX" in groups else next(iter(groups))
-        check_distances(report, command, page, group, *[op["id"] for op in groups[group][:2]])
+        check_distances(report, command, pages, group, *[op["id"] for op in groups[group][:2]])
     return report.finish()
 
 

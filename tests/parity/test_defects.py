@@ -67,7 +67,7 @@ def check_hidden(report, command, folder):
     texts = {" ".join(arguments): run(command, *arguments) for arguments in (
         ["--help-all"], ["list"], ["list", "--json"], ["list", "--markdown"], ["shader", "--list"], ["list", "agx_minimal"],
         *([name, "--help"] for name in ("apply", "bake", "compare", "config", "eval", "plot", "shader", "verify")))}
-    for path in (PROJECT / "docs" / "operators.md", PROJECT / "luts" / "MANIFEST.csv", *PROJECT.glob("ocio_config/*.ocio")):
+    for path in (PROJECT / "docs" / "operators.md", *PROJECT.glob("docs/operators/*.md"), PROJECT / "luts" / "MANIFEST.csv", *PROJECT.glob("ocio_config/*.ocio")):
         texts[path.name] = path.read_text()
     report.check("the texts name operators", all("agx_minimal" in texts[t] for t in ("list", "list --json", "operators.md")))
     for what, text in texts.items():

@@ -55,10 +55,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "sidedata=delete,format=yuv420p -color_primaries bt709 -color_trc bt709 -colorspace bt709 "
          "-c:a copy out.mkv: HDR10 (PQ, Rec.2020) in, BT.709 out, 4:2:0 of 8 bits; yuv420p10le for "
          "10",
-         "ffmpeg 5.1 and 9.0",
-         false,
-         "",
-         128},  // libavfilter/vf_lut3d.c refuses more
+         "ffmpeg 5.1 and 9.0"},
         {"premiere",
          "Premiere Pro",
          LutFormat::cube,

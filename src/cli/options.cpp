@@ -492,7 +492,7 @@ std::string hint_of(std::string_view typed) {
         {"--autoorient", "pictures are turned by their orientation anyway"},
         {"-auto-orient", "pictures are turned by their orientation anyway"},
         {"--resize", "use oiiotool --resize before, on scene-linear light"},
-        {"-resize", "use oiiotool --resize before, on scene-linear light"},
+        {"-resize", "use `tonewright apply --resize SIZE`"},
         {"--crop", "use oiiotool --crop before"},
         {"--cdl", "an ASC CDL is a LUT: use --lut FILE.cdl or .cc, or a .tone file"},
         {"--mulc", "use --exposure STOPS"},

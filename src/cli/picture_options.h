@@ -84,6 +84,8 @@ struct ApplyOptions : ViewOptions {
     bool is_false_color = false;
     bool has_legend = false;
     bool dither = false;
+    /// @see ReadOptions::resize
+    std::string resize;
     bool is_in_place = false;
     std::string alpha = "keep";
     std::string compression;

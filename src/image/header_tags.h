@@ -36,6 +36,10 @@ inline constexpr const char* kIgnored = "tonewright:file:ignored";
 /// The layer and the subimage that were chosen, and the choices.
 inline constexpr const char* kLayer = "tonewright:file:layer";
 inline constexpr const char* kSubimage = "tonewright:file:subimage";
+/// The pixels were decoded to light. The name of the color they had.
+inline constexpr const char* kLight = "tonewright:file:light";
+/// Of that light, double[10]: primaries and white, 1 if it is absolute, and the factor on it.
+inline constexpr const char* kLightColor = "tonewright:file:light_color";
 }  // namespace file_tag
 
 /// ITU-T H.273 code points as OpenImageIO 3.1 names them: int[4], primaries, transfer, matrix,

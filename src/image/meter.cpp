@@ -115,11 +115,21 @@ SceneMeter measure_whole(const ImageBuf& src, const MeterOptions& options,
 
 }  // namespace
 
+/// Of the same light, at exposure 0.
+static TonemapOptions tonemap_options(const MeterOptions& options) {
+    TonemapOptions result;
+    result.input = options.input;
+    result.input_units = options.input_units;
+    result.reference_white = options.reference_white;
+    result.unpremult = options.unpremult;
+    return result;
+}
+
 SceneMeter measure_file(const std::string& path, const MeterOptions& options,
                         SceneMeter::Figures figures, int nthreads, std::size_t batch_bytes) {
     const auto open = [&] {
         PictureReader reader(path, nthreads, options.read);
-        reader.convert_colors(options.input);
+        reader.convert_colors(tonemap_options(options));
         return reader.spec();
     };
     const ImageSpec spec = open();
@@ -127,7 +137,7 @@ SceneMeter measure_file(const std::string& path, const MeterOptions& options,
     const ROI window = measured_window(spec, options);
     return measure_picture(spec, options, figures, nthreads, [&](SceneMeter& meter) {
         PictureReader reader(path, nthreads, options.read);
-        reader.convert_colors(options.input);
+        reader.convert_colors(tonemap_options(options));
         if (spec.depth > 1) {
             const ImageBuf volume = reader.read_all();
             pass_over(volume, options)(meter);

@@ -467,9 +467,27 @@ constexpr std::array kMetadata = {"oiio:UnassociatedAlpha",
                                   file_tag::kSrgb,
                                   file_tag::kGamma,
                                   file_tag::kPrimaries,
-                                  file_tag::kImpossible};
+                                  file_tag::kImpossible,
+                                  file_tag::kLight,
+                                  file_tag::kLightColor};
+
+constexpr int kLightNumbers = 10;
+
+/// Of tag_as_light().
+Finding tagged_light(const ImageSpec& spec) {
+    const ParamValue* value =
+        spec.find_attribute(file_tag::kLightColor, TypeDesc(TypeDesc::DOUBLE, kLightNumbers));
+    if (!value) return {};
+    const auto* n = static_cast<const double*>(value->data());
+    SourceColor color{spec.get_string_attribute(file_tag::kLight),
+                      {"", {n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}}};
+    color.is_absolute = n[8] != 0;
+    color.scale = n[9];
+    return Found{std::move(color), "resized"};
+}
 
 Found color_of(const ImageSpec& spec, std::string_view input, std::vector<std::string>* ignored) {
+    if (Finding light = tagged_light(spec)) return std::move(*light);
     if (!is_same_name(input, kAutoInput)) return {find_source_color(input), "--input"};
     if (const std::string why = spec.get_string_attribute(file_tag::kImpossible); !why.empty())
         throw PictureError(why);
@@ -583,6 +601,18 @@ OIIO::ImageBuf converted_picture(const OIIO::ImageBuf& picture, const SourceColo
     if (divides) OIIO::ImageBufAlgo::premult(result, result);
     result.specmod().extra_attribs = converted_spec(spec, color).extra_attribs;
     return result;
+}
+
+void tag_as_light(ImageSpec& spec, const SourceColor& color) {
+    const Primaries& p = color.primaries;
+    const std::array<double, kLightNumbers> numbers = {
+        p.red.x,        p.red.y,        p.green.x,
+        p.green.y,      p.blue.x,       p.blue.y,
+        p.whitepoint.x, p.whitepoint.y, color.is_absolute ? 1.0 : 0.0,
+        color.scale};
+    spec.attribute(file_tag::kLight, "light of " + color.name);
+    spec.attribute(file_tag::kLightColor, TypeDesc(TypeDesc::DOUBLE, kLightNumbers),
+                   numbers.data());
 }
 
 int orientation_of(const ImageSpec& spec) {

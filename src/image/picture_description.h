@@ -65,6 +65,10 @@ struct PictureDescription {
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec converted_spec(const OIIO::ImageSpec& spec,
                                                             const SourceColor& color);
 
+/// Says that the pixels were decoded to the light of `color`. describe_picture() then ignores its
+/// input.
+TONEWRIGHT_API void tag_as_light(OIIO::ImageSpec& spec, const SourceColor& color);
+
 /// The picture as viewers show it: turned by its orientation, which becomes 1.
 /// @throws std::bad_alloc
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf upright(OIIO::ImageBuf picture);

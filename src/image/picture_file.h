@@ -83,9 +83,12 @@ class TONEWRIGHT_API PictureReader {
 
     /// As in an ImageBuf in memory, with the facts of the header (header_tags.h).
     [[nodiscard]] const OIIO::ImageSpec& spec() const { return spec_; }
-    /// From now on, delivers float light of pictures whose encoding no Pipeline can hold.
+    /// From now on, delivers float light of pictures whose encoding no Pipeline can hold, and of
+    /// those that are resized.
+    /// @param options  of tone mapping; a resized picture depends on their input, alpha, exposure,
+    ///                 units and white
     /// @throws PictureError, Error  @see describe_picture
-    void convert_colors(std::string_view input);
+    void convert_colors(const TonemapOptions& options);
     /// Rows are read in multiples of this, from the first one on: the height of a tile, or 1.
     [[nodiscard]] int row_step() const;
     /// Reads rows [ybegin, yend) of all channels, interleaved and packed.
@@ -101,6 +104,9 @@ class TONEWRIGHT_API PictureReader {
     void choose_layer(const ReadOptions& options);
     void deliver(const std::vector<int>& channels, bool has_alpha);
     void check_size(double max_pixels) const;
+    [[nodiscard]] OIIO::ImageBuf read_all_stored();
+    /// The resized picture.
+    [[nodiscard]] const OIIO::ImageBuf& resized();
     /// Rows as the file has them, in the delivered order of channels.
     void read_stored(int ybegin, int yend, std::byte* to);
 
@@ -115,6 +121,9 @@ class TONEWRIGHT_API PictureReader {
     std::vector<int> channels_;         // of the file that are delivered; empty: all in their order
     std::vector<std::byte> scratch_;    // rows with all channels
     std::optional<SourceColor> color_;  // to convert from; none: no conversion
+    std::optional<TonemapOptions> resizing_;  // none: no resizing
+    std::optional<OIIO::ImageBuf> resized_;
+    int nthreads_ = 0;
 };
 
 /// Bytes that are read, processed and written at a time.

@@ -20,6 +20,7 @@
 #include "image/heif_reader.h"
 #include "image/layers.h"
 #include "image/picture_file.h"
+#include "image/resize.h"
 #include "image/source_picture.h"
 #include "tonewright/image_io.h"
 
@@ -27,6 +28,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
+using OIIO::ROI;
 
 [[noreturn]] void cannot_read(const std::string& path, const std::string& reason) {
     throw FileError(fmt::format("{}: cannot read: {}", path, reason));
@@ -292,7 +294,15 @@ PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOp
                                              : fmt::format("{} ({})", subimage_, printable(name)));
     choose_layer(options);
     stored_ = spec_;
+    nthreads_ = nthreads;
     if (format == "dpx") check_dpx_size(path);
+    if (options.resize.empty()) return;
+    try {
+        spec_ = resized_spec(stored_, options.resize, options.max_pixels);
+    } catch (const PictureError& e) {
+        cannot_read(path, e.what());
+    }
+    resizing_.emplace();
 }
 
 PictureReader::~PictureReader() = default;
@@ -438,8 +448,15 @@ void PictureReader::deliver(const std::vector<int>& channels, bool has_alpha) {
     channels_ = is_identity ? std::vector<int>() : channels;
 }
 
-void PictureReader::convert_colors(std::string_view input) {
-    SourceColor color = source_color(stored_, input);
+void PictureReader::convert_colors(const TonemapOptions& options) {
+    SourceColor color = source_color(stored_, options.input);
+    if (resizing_) {
+        resizing_ = options;
+        spec_ = light_spec(spec_, color, options.unpremult);
+        color_ = std::move(color);
+        resized_.reset();
+        return;
+    }
     if (!color.convert) return;
     spec_ = converted_spec(stored_, color);
     color_ = std::move(color);
@@ -478,6 +495,12 @@ void PictureReader::read_stored(int ybegin, int yend, std::byte* to) {
 }
 
 void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
+    if (resizing_) {
+        const ROI rows(spec_.x, spec_.x + spec_.width, ybegin, yend, spec_.z, spec_.z + 1, 0,
+                       spec_.nchannels);
+        if (!resized().get_pixels(rows, OIIO::TypeFloat, to)) check(false);
+        return;
+    }
     if (!color_) {
         read_stored(ybegin, yend, to);
         return;
@@ -489,7 +512,23 @@ void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
     if (!light.get_pixels(light.roi(), OIIO::TypeFloat, to)) check(false);
 }
 
+const ImageBuf& PictureReader::resized() {
+    if (!color_) convert_colors({});
+    if (!resized_) {
+        const ImageBuf stored = read_all_stored();
+        resized_ = with_memory_for(
+            path_, [&] { return resized_light(stored, *color_, *resizing_, spec_, nthreads_); });
+    }
+    return *resized_;
+}
+
 ImageBuf PictureReader::read_all() {
+    if (resizing_) return resized();
+    ImageBuf image = read_all_stored();
+    return color_ ? converted_picture(image, *color_) : std::move(image);
+}
+
+ImageBuf PictureReader::read_all_stored() {
     // Cleared, because some readers deliver less than they declare.
     ImageBuf image = with_memory_for(path_, [&] { return black_picture(stored_); });
     if (channels_.empty()) {
@@ -507,7 +546,7 @@ ImageBuf PictureReader::read_all() {
             to += stored_.scanline_bytes() * static_cast<std::size_t>(end - y);
         }
     }
-    return color_ ? converted_picture(image, *color_) : std::move(image);
+    return image;
 }
 
 void report_header(const OIIO::ImageSpec& spec, std::string_view input,

@@ -236,7 +236,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     check_pixel_type("source", reader.spec().format);
     (void)channel_layout(reader.spec());
     report_header(reader.spec(), tonemapper.options().input, read);
-    reader.convert_colors(tonemapper.options().input);
+    reader.convert_colors(tonemapper.options());
     const bool turns = orientation_of(reader.spec()) != 1 && !writer.keeps_orientation();
     if (reader.spec().depth > 1 || tonemapper.needs_whole_picture() || turns) {
         ImageBuf source = reader.read_all();

@@ -25,6 +25,7 @@
 #include "base/input_file.h"
 #include "base/strings.h"
 #include "image/lut_picture.h"
+#include "image/resize.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
 #include "lut/lut_warnings.h"
@@ -501,7 +502,9 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
                        const std::string& type, const std::string& alpha, int nthreads,
                        const std::string& subimage, const std::string& layer, bool is_in_place,
                        double max_pixels, const std::string& compression, int quality,
-                       const std::string& subsampling, bool verifies, const py::kwargs& arguments) {
+                       const std::string& subsampling, bool verifies, const std::string& resize,
+                       const py::kwargs& arguments) {
+    if (!resize.empty()) (void)parse_resize(resize);
     check_overwriting("tonemap_file", {{in, out}}, is_in_place);
     TonemapOptions options = parse_options(op, arguments);
     WriteOptions write;
@@ -521,6 +524,7 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
     write.says_how = true;
     write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
     ReadOptions read = {.subimage = subimage, .layer = layer, .max_pixels = max_pixels};
+    read.resize = resize;
     read.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", in, text)); };
     tonemap_file(Tonemapper(options), in, out, write, read, nthreads);
 }
@@ -701,7 +705,7 @@ PYBIND11_MODULE(_tonewright, m) {
           py::arg("op"), py::kw_only(), py::arg("type"), py::arg("alpha"), py::arg("nthreads"),
           py::arg("subimage"), py::arg("layer"), py::arg("in_place"), py::arg("max_pixels"),
           py::arg("compression"), py::arg("quality"), py::arg("subsampling"),
-          py::arg("verify_output"));
+          py::arg("verify_output"), py::arg("resize"));
     m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"));
     m.def("meter", &tw::meter_any);
     m.def("info", &tw::describe_file, py::arg("image"), py::arg("input"), py::arg("subimage"),

@@ -161,7 +161,7 @@ def check_streams(report, run, folder):
 
 def check_hints(report, run):
     for option, words in (("--gamma", "--display"), ("--autoorient", "orientation"), ("--channels", "--layer"), ("--cdl", "--lut"),
-                          ("--resize", "oiiotool")):
+                          ("-resize", "apply --resize SIZE")):
         code, _out, said = run("apply", "scene.exr", "o.png", option, "2")
         report.check(f"{option}: a hint", code == USAGE and words in said and len(said.splitlines()) == 1, said)
 

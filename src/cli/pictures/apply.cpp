@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iterator>
@@ -26,6 +27,7 @@
 #include "cli/pictures/standard_streams.h"
 #include "image/color_tags.h"
 #include "image/picture_file.h"
+#include "image/resize.h"
 #include "image/source_picture.h"
 #include "image/tonemap_file.h"
 #include "tonewright/engine.h"
@@ -86,9 +88,29 @@ PictureInput picture_of(const ApplyOptions& options) {
 }
 
 MeterOptions meter_options_of(const ApplyOptions& options) {
-    return meter_options_of(options.metering,
-                            {options.input, options.input_units, options.reference_white},
-                            picture_of(options));
+    MeterOptions result = meter_options_of(
+        options.metering, {options.input, options.input_units, options.reference_white},
+        picture_of(options));
+    result.read.resize = options.resize;
+    return result;
+}
+
+/// @throws Error  a size that no picture can have
+void check_resize(const ApplyOptions& options) {
+    if (!options.given.contains("--resize")) return;
+    ResizeSize size;
+    try {
+        size = parse_resize(options.resize);
+    } catch (const Error& e) {
+        throw Error(std::string("apply: --") + e.what());
+    }
+    const double most = options.picture.max_pixels.value_or(kMaxPixels);
+    if (static_cast<double>(size.width) * std::max(size.height, 1) > most) {
+        throw Error(
+            fmt::format("apply: --resize is {}; expected at most {:.0f} pixels "
+                        "(--max-pixels)",
+                        options.resize, most));
+    }
 }
 
 /// A frame that took too long to meter is not tone mapped: if it were faster the second time, it
@@ -248,13 +270,13 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
 
 /// "render.exr (640 x 360 half, lin_rec709) -> out.png: AgX (agx_blender), exposure +1, sRGB,
 /// 0.12 s"
-void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const ReadOptions& read,
+void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const ApplyOptions& given,
                   const ResultLine& line) {
     if (!says_what_was_done()) return;
     const TonemapOptions& options = tonemapper.options();
     const ResolvedOperator op =
         resolve_picture_operator(options.op, options.settings, options.look, options.others);
-    const PictureReader reader(file.in, 1, read);
+    const PictureReader reader(file.in, 1, read_options_of(given.picture));
     const OIIO::ImageSpec& spec = reader.spec();
     const PictureDescription said = describe_picture(spec, options.input);
     std::string text =
@@ -262,6 +284,10 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Re
                     file.in, spec.width, spec.height, spec.format.c_str(), said.color.name,
                     said.rule, file.out, op.op->view, operator_text(op),
                     file.exposure_stops.value_or(options.exposure_stops), options.display);
+    if (!given.resize.empty()) {
+        const OIIO::ImageSpec size = resized_spec(spec, given.resize, kUnlimited);
+        text += fmt::format(", resized to {} x {}", size.full_width, size.full_height);
+    }
     if (message_options().is_verbose) text += fmt::format(", {} threads", thread_count(0));
     line.print(text);
 }
@@ -281,6 +307,7 @@ namespace {
 
 int run_on_files(ApplyOptions options) {
     use_threads(options.picture);
+    check_resize(options);
     ApplyFiles files = files_of(options);
     if (!options.lut.file.empty()) return apply_lut(options, files);
     TonemapOptions tonemap;
@@ -345,7 +372,7 @@ int run_on_files(ApplyOptions options) {
     Warnings warnings(file.out);
     write.warn = warnings.hearer();
     ReadMessages messages(file.in);
-    const ReadOptions read = messages.hearing(read_options_of(options.picture));
+    const ReadOptions read = messages.hearing(read_options_of(options));
     const ResultLine result;
     std::vector<MeteredPicture> metered;
     try {
@@ -368,7 +395,7 @@ int run_on_files(ApplyOptions options) {
     warnings.print();
     warn_of_histograms(metered);
     tell_default();
-    print_result(file, tonemapper, read_options_of(options.picture), result);
+    print_result(file, tonemapper, options, result);
     return kOk;
 }
 

@@ -272,6 +272,12 @@ int exit_code_of(const std::vector<FrameFiles>& files) {
 
 }  // namespace
 
+ReadOptions read_options_of(const ApplyOptions& options) {
+    ReadOptions read = read_options_of(options.picture);
+    read.resize = options.resize;
+    return read;
+}
+
 void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& files,
                        const SequenceOptions& options, const PictureInput& picture) {
     std::vector<FrameFiles*> open;
@@ -355,7 +361,7 @@ int apply_to_frames(
     ReadMessages messages(options.in);
     SequenceOptions sequence;
     sequence.write = write;
-    sequence.read = messages.hearing(read_options_of(options.picture));
+    sequence.read = messages.hearing(read_options_of(options));
     sequence.skip_existing = options.frames.skip_existing;
     sequence.jobs = options.frames.jobs;
     sequence.nthreads = options.picture.threads;
@@ -373,7 +379,7 @@ int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
     write.warn = warnings.hearer();
     SequenceOptions sequence;
     sequence.write = write;
-    sequence.read = messages.hearing(read_options_of(options.picture));
+    sequence.read = messages.hearing(read_options_of(options));
     sequence.names_pictures = true;
     sequence.nthreads = options.picture.threads;
     run(tonemapper, files, sequence, options.picture, "pictures");

@@ -110,6 +110,8 @@ FileStamp stamp_of(const std::string& path) {
 Json to_json(const MeterOptions& options) {
     using Unpremult = TonemapOptions::Unpremult;
     Json region = nullptr;
+    Json size = nullptr;
+    if (!options.read.resize.empty()) size = options.read.resize;
     if (const OIIO::ROI& r = options.region; r.defined())
         region = Json::array({r.xbegin, r.ybegin, r.width(), r.height()});
     return {{"input", options.input},
@@ -117,6 +119,7 @@ Json to_json(const MeterOptions& options) {
             {"reference_white", options.reference_white},
             {"subimage", options.read.subimage},
             {"layer", options.read.layer},
+            {"resize", size},
             {"unpremult", options.unpremult == Unpremult::automatic
                               ? Json("as the picture says")
                               : Json(options.unpremult == Unpremult::yes)},

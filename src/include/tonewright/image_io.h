@@ -27,6 +27,13 @@ struct ReadOptions {
     /// usual name of a picture (Combined, beauty, rgba, ...); else the first one in color that is
     /// no data (ambient occlusion, depth, normals, cryptomattes, ...). Other channels follow.
     std::string layer = {};
+    /// Size of the picture: `1920x1080`, `1920` (the width; the height follows from the picture's
+    /// shape) or `50%`. Empty: as in the file. It is the size of the display window; the data
+    /// window changes with it. The picture becomes scene-linear light in floats, with associated
+    /// alpha. The filter is Lanczos (`lanczos3` of ImageBufAlgo::resize()); light above 1 takes a
+    /// filter without negative lobes (`triangle`), so that lamps have no rings. Channels beyond
+    /// color and alpha take the nearest pixel. The whole picture is in memory.
+    std::string resize = {};
     /// Limit of the pixels that the file may declare.
     double max_pixels = kMaxPixels;
     /// Receives warnings about the file, one line each, without its name: tags that are not used.

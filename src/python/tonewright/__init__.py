@@ -120,7 +120,7 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
                  input_units: str = "relative", mix: float = 1, unpremult: str | bool = "auto", statistics: str = "picture",
                  dtype: str | None = None, alpha: str = "keep", subimage: int | str = "", layer: str = "",
                  nthreads: int = 0, in_place: bool = False, max_pixels: float = 1e9, compression: str = "", quality: int = 0,
-                 subsampling: str = "", verify_output: bool = False) -> None:
+                 subsampling: str = "", verify_output: bool = False, resize: int | str = "") -> None:
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
@@ -136,6 +136,7 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     quality: of JPEG, WebP, HEIF and AVIF, [1, 100] (default 0: the format's).
     subsampling: chroma of JPEG: "4:4:4", "4:2:2", "4:2:0" or "4:1:1" (default: 4:4:4 from quality 90 on, else 4:2:0).
     verify_output: read the written file and compare all pixels, before it gets its name.
+    resize: size of the picture, in linear light before the operator: "1920x1080", 1920 (the width) or "50%".
     Other options: as tonemap().
 
     Example: tonewright.tonemap_file("shot.exr", "shot.png", "hable", settings={"white": 8})
@@ -148,7 +149,7 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
                              nthreads=_operator.index(nthreads), subimage=str(subimage), layer=_text("layer", layer),
                              in_place=bool(in_place), max_pixels=_number("max_pixels", max_pixels),
                              compression=_text("compression", compression), quality=_operator.index(quality),
-                             subsampling=_text("subsampling", subsampling), verify_output=bool(verify_output), **options)
+                             subsampling=_text("subsampling", subsampling), verify_output=bool(verify_output), resize=str(resize), **options)
 
 
 def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,

@@ -17,7 +17,8 @@ MessageOptions& message_options() {
 }
 
 void print_message(const std::string& text) {
-    fmt::print(stderr, "tonewright: {}\n", one_line(text));
+    const auto& named = message_options().named;
+    fmt::print(stderr, "tonewright: {}\n", one_line(named ? named(text) : text));
 }
 
 void print_excerpt(const std::string& lines) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 
 #include "tonewright/version.h"
@@ -15,6 +16,8 @@ struct MessageOptions {
     bool is_strict = false;
     bool is_quiet = false;
     bool is_verbose = false;
+    /// Names in messages: temporary files of standard input and output are "-". Empty: as they are.
+    std::function<std::string(std::string)> named = {};
 };
 
 /// The options of this process. The module of the picture commands has its own: the program passes

@@ -14,6 +14,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -26,6 +27,7 @@
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
 #include "image/tonemap_file.h"
+#include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
@@ -226,6 +228,44 @@ class FilePass {
 
 }  // namespace
 
+namespace {
+
+/// True for code values of an SDR display: white is 1. Logs of cameras and film reach far beyond.
+bool is_for_display(const SourceColor& color) {
+    if (color.is_absolute) return false;
+    if (color.convert) return true;
+    // The curves of cameras, and textures, which are a part of a scene.
+    for (const std::string_view scene : {"_scene", "Rec709", "Texture"}) {
+        if (color.name.ends_with(scene)) return false;
+    }
+    constexpr double kMostWhite = 2;  // code 1 of a narrow range is 1.2
+    const Vector3 white = ReferenceEngine(color.decode)({1, 1, 1});
+    return !color.decode.empty() && *std::max_element(white.begin(), white.end()) < kMostWhite;
+}
+
+bool expects_a_scene(const ResolvedOperator& op) {
+    const std::string& file = op.op->file;
+    const bool is_formula = op.op->source == "typed";
+    const bool is_lut = !file.empty() && !is_formula && !file.ends_with(".tone");
+    return !is_lut && op.op->id != "clamp" && op.op->id != "false_color";
+}
+
+}  // namespace
+
+std::string finished_warning(const ImageSpec& spec, const TonemapOptions& options) {
+    if (!is_same_name(options.input, kAutoInput) || options.mix == 0) return {};
+    const ResolvedOperator op =
+        resolve_picture_operator(options.op, options.settings, options.look, options.others);
+    if (!expects_a_scene(op)) return {};
+    const PictureDescription said = describe_picture(spec, options.input);
+    if (!is_for_display(said.color)) return {};
+    const std::string name = op.op->source == "typed" ? "the formula" : op.op->id;
+    return fmt::format(
+        "{}{} by {}), so {} tone maps it a second time; the operator clamp keeps the colors, "
+        "--input lin_rec709 takes the numbers as scene-linear",
+        kFinishedPicture, said.color.name, said.rule, name);
+}
+
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                         const WriteOptions& write, const ReadOptions& read, int nthreads,
                         std::size_t batch_bytes) {
@@ -236,6 +276,10 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     check_pixel_type("source", reader.spec().format);
     (void)channel_layout(reader.spec());
     report_header(reader.spec(), tonemapper.options().input, read);
+    if (read.warn) {
+        const std::string text = finished_warning(reader.spec(), tonemapper.options());
+        if (!text.empty()) read.warn(text);
+    }
     reader.convert_colors(tonemapper.options());
     const bool turns = orientation_of(reader.spec()) != 1 && !writer.keeps_orientation();
     if (reader.spec().depth > 1 || tonemapper.needs_whole_picture() || turns) {

@@ -96,8 +96,9 @@ class Trial:
         return subprocess.run([str(word) for word in command], capture_output=True, text=True, errors="replace", timeout=120, check=False)
 
     def lines(self):
-        """What was said about the header, without what was said about the output."""
-        return [*self.applied.stderr.splitlines(), *(json.dumps(line) for line in self.info.get("ignored") or [])]
+        """What was said about the header, without what was said about the output and the operator."""
+        about_header = [line for line in self.applied.stderr.splitlines() if "finished for a display (" not in line]
+        return [*about_header, *(json.dumps(line) for line in self.info.get("ignored") or [])]
 
     def names_it(self):
         said = "\n".join(self.lines()).lower()

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -404,6 +405,10 @@ int run_on_files(ApplyOptions options) {
 int run_apply(const ApplyOptions& given) {
     ApplyOptions options = given;
     const StandardStreams streams(options);
+    message_options().named = [&](std::string text) {
+        return streams.with_dashes(std::move(text));
+    };
+    const std::shared_ptr<void> no_names(nullptr, [](void*) { message_options().named = {}; });
     try {
         const int exit_code = run_on_files(std::move(options));
         streams.finish();

@@ -15,6 +15,7 @@
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
 #include "image/picture_file.h"
+#include "image/tonemap_file.h"
 #include "pipeline/exposure.h"
 #include "tonewright/engine.h"
 #include "tonewright/image_io.h"
@@ -109,14 +110,40 @@ ReadOptions read_options_of(const PictureChoice& choice) {
     return options;
 }
 
+bool FinishedPictures::take(const std::string& text) {
+    const std::size_t at = text.find(kFinishedPicture);
+    if (at == std::string::npos) return false;
+    constexpr std::string_view kColon = ": ";
+    const std::string picture =
+        at >= kColon.size() ? text.substr(0, at - kColon.size()) : std::string();
+    const std::string reason = text.substr(at);
+    if (message_options().is_strict)
+        warn(fmt::format("{}: {}", picture.empty() ? name_ : picture, reason));  // throws
+    pictures_[reason].insert(picture.empty() ? name_ : picture);
+    return true;
+}
+
+void FinishedPictures::print() {
+    for (const auto& [reason, pictures] : pictures_) {
+        if (message_options().is_quiet) continue;
+        std::string names = *pictures.begin();
+        if (pictures.size() > 1) names += fmt::format(" and {} more", pictures.size() - 1);
+        warn(fmt::format("{}: {}", names, reason));
+    }
+    pictures_.clear();
+}
+
 ReadOptions ReadMessages::hearing(ReadOptions options) {
-    options.warn = warnings_.hearer();
+    options.warn = [this](const std::string& text) {
+        if (!finished_.take(text)) warnings_.add(text);
+    };
     options.note = [this](const std::string& text) { notes_.add(text); };
     return options;
 }
 
 void ReadMessages::print() {
     notes_.print();
+    finished_.print();
     warnings_.print();
 }
 

@@ -4,7 +4,9 @@
 #include <OpenImageIO/imagebuf.h>
 
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,11 +83,28 @@ void use_threads(const PictureInput& input);
 /// The options of the library, without callbacks.
 [[nodiscard]] ReadOptions read_options_of(const PictureChoice& choice);
 
+/// Warns of pictures that are tone mapped a second time (kFinishedPicture): one line for all with
+/// the same reason. Not with --quiet, unless --strict was given.
+class FinishedPictures {
+  public:
+    /// @param name  as for Warnings
+    explicit FinishedPictures(std::string name) : name_(std::move(name)) {}
+    /// False for other texts.
+    /// @throws std::runtime_error  --strict was given
+    [[nodiscard]] bool take(const std::string& text);
+    void print();
+
+  private:
+    std::string name_;
+    std::map<std::string, std::set<std::string>> pictures_;  // by the reason
+};
+
 /// What a command says about the picture that it reads. print() after QuietStderr has ended.
 class ReadMessages {
   public:
     /// @param name  of the picture, or of the pictures
-    explicit ReadMessages(const std::string& name) : warnings_(name), notes_(name) {}
+    explicit ReadMessages(const std::string& name)
+        : warnings_(name), notes_(name), finished_(name) {}
     /// The options with callbacks to this object, which must live as long as they do.
     [[nodiscard]] ReadOptions hearing(ReadOptions options);
     void print();
@@ -93,6 +112,7 @@ class ReadMessages {
   private:
     Warnings warnings_;
     Notes notes_;
+    FinishedPictures finished_;
 };
 
 /// read_image() with associated alpha, upright, without messages of other libraries on the

@@ -23,6 +23,9 @@ using Names = std::vector<std::string>;
 /// No name of a file or an operator is much longer, and nobody types more.
 constexpr std::size_t kLongestInline = 4096;
 
+/// Marks of steps and of comparisons.
+constexpr std::string_view kSteps = "=;!&|";
+
 /// The names in a text; `2.5e3` has none.
 Names names_in(std::string_view text) {
     Names names;
@@ -72,7 +75,11 @@ bool may_be_formula(std::string_view given) {
     const bool has_color = std::any_of(names.begin(), names.end(), [](const std::string& name) {
         return name == "x" || name == "r" || name == "g" || name == "b";
     });
-    return has_color && (text == "x" || text.find_first_of(kMarks) != std::string_view::npos);
+    if (!has_color) return false;
+    // Steps (`a = x; a`) and comparisons; `name:parameter=value` is an operator with a setting.
+    const bool has_steps = text.find(':') == std::string_view::npos &&
+                           text.find_first_of(kSteps) != std::string_view::npos;
+    return text == "x" || has_steps || text.find_first_of(kMarks) != std::string_view::npos;
 }
 
 std::shared_ptr<const Operator> formula_operator(std::string_view given) {
@@ -104,7 +111,11 @@ std::shared_ptr<const Operator> formula_operator(std::string_view given) {
             }
             formula.f.push_back(parse_formula(part, scope));
         } catch (const FormulaError& e) {
-            fail(text, "column " + std::to_string(begin + e.at.column) + ": " + e.what());
+            const bool has_steps = text.find_first_of(kSteps) != std::string_view::npos;
+            fail(text, "column " + std::to_string(begin + e.at.column) + ": " + e.what() +
+                           (has_steps ? "; a formula is an expression of x, or of r, g and b, with "
+                                        "steps before it: a = x*2; a/(1 + a)"
+                                      : ""));
         }
     }
     if (!is_of_x && formula.f.size() == 1) formula.f.resize(3, formula.f[0]);

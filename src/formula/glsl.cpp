@@ -469,7 +469,7 @@ class Parser {
         if (any && any->refusal) fail(any->refusal->offset, any->refusal->message);
         if (any) fail(any->name.begin, "function has other types; expected " + wanted);
         if (!name.empty() && !names.empty()) {
-            fail(0, "shader has no function " + printable(name) + "; expected " +
+            throw Error("import: --function is " + printable(name) + "; expected " +
                         join_choices(names) + did_you_mean(name, names));
         }
         const Function* last = functions_.empty() ? nullptr : &functions_.back();

@@ -164,7 +164,9 @@ def check_command(report, command, folder):
     cases = [
         ("--strict", [gamma, "-o", other, *exposure, "--strict"], 1, "(an error because of --strict)"),
         ("no --parameter", [gamma, "-o", other], 3, f"{gamma}:2:40: argument exposure has no value; expected one, as with"),
-        ("another function", [gamma, "-o", other, "--function", "tonemapreinhard"], 3,
+        ("another function", [gamma, "-o", other, "--function", "tonemapreinhard"], 2,
+         "tonewright: import: --function is tonemapreinhard; expected "),
+        ("another function: the nearest", [gamma, "-o", other, "--function", "tonemapreinhard"], 2,
          "did you mean tonemapReinhard?"),
         ("no parameter of it", [gamma, "-o", other, *exposure, "--parameter", "white=1"], 2,
          "import: --parameter is white; expected exposure"),

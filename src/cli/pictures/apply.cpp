@@ -309,6 +309,8 @@ namespace {
 int run_on_files(ApplyOptions options) {
     use_threads(options.picture);
     check_resize(options);
+    if (options.given.contains("--operator") && trimmed(options.op).empty())
+        throw Error("apply: --operator has no value; expected --operator NAME");
     ApplyFiles files = files_of(options);
     if (!options.lut.file.empty()) return apply_lut(options, files);
     TonemapOptions tonemap;

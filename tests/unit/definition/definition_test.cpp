@@ -533,15 +533,30 @@ TEST(InlineFormula, ThatEncodesHasACaution) {
 }
 
 TEST(InlineFormula, ComesAfterNamesAndFiles) {
-    for (const char* text : {"x", "x/(1+x)", "r, g, b", "max(x, 0)", "1 - exp(-x)", "x^2"})
+    for (const char* text : {"x", "x/(1+x)", "r, g, b", "max(x, 0)", "1 - exp(-x)", "x^2", "x==1",
+                             "x != 1", "a=x; a", "y = x", "return x;"})
         EXPECT_TRUE(may_be_formula(text)) << text;
     for (const char* text : {"", "hable", "AgX (Blender)", "AgX (Blendr)", "r", "2+3", "xyz(1)",
-                             "reinhard:white=4", "1.x"})
+                             "reinhard:white=4", "1.x", "hable white=4", "my_curve:x=1"})
         EXPECT_FALSE(may_be_formula(text)) << text;
     const OperatorSet set({}, OperatorSet::Formulas::yes);
     EXPECT_EQ(resolve_operator("AgX (Blender)", {}, {}, set).op->id, "agx_blender");
     EXPECT_EQ(resolve_operator("hable:white=4", {}, {}, set).op->id, "hable");
     expect_error([] { (void)resolve_operator("x/(1+x)"); }, "expected an id from");
+}
+
+TEST(InlineFormula, HasSteps) {
+    using Color = std::array<double, 3>;
+    EXPECT_EQ(of_formula("x == 1", 1, 2, 0.5), (Color{1, 0, 0}));
+    EXPECT_EQ(of_formula("x >= 1 ? 1 : x", 1, 2, 0.5), (Color{1, 1, 0.5}));
+    EXPECT_EQ(of_formula("x != 1", 1, 2, 0.5), (Color{0, 1, 1}));
+    EXPECT_EQ(of_formula("a=x; a", 1, 2, 0.5), (Color{1, 2, 0.5}));
+    const char* const what =
+        "; a formula is an expression of x, or of r, g and b, with steps before it: a = x*2; a/(1 "
+        "+ "
+        "a)";
+    for (const char* text : {"y = x/(1+x)", "return x;", "x=1", "x &&", "f(x) = x"})
+        expect_error([&] { (void)formula_operator(text); }, what);
 }
 
 TEST(InlineFormula, ThatIsWrongSaysWhere) {

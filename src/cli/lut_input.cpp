@@ -78,8 +78,10 @@ LutOptions with_stated_input(const LutOptions& options, const std::string& input
     }
     if (!stated) {
         warn(fmt::format(
-            "{}: the encoding that the LUT expects is unknown; colors are passed unchanged "
-            "(set --input-encoding; `none` keeps them unchanged)",
+            "{}: the file does not say which encoding it expects, so colors are passed unchanged; "
+            "many LUTs expect a log: --input-encoding acescct, logc3, ... (`tonewright verify "
+            "--lut` "
+            "finds it if the LUT is a known operator), or none",
             options.file));
         return options;
     }

@@ -536,7 +536,7 @@ std::optional<std::string> unknown_option(const CLI::App& command) {
     }
     const std::string typed = option->substr(0, option->find('='));
     const std::string hint = hint_of(typed);
-    return fmt::format("{}: option is {}; expected one of {}{}", command.get_name(), typed,
+    return fmt::format("{}: there is no option {}; {} lists all{}", command.get_name(), typed,
                        help_command(command), hint.empty() ? did_you_mean(typed, known) : hint);
 }
 

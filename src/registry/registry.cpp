@@ -61,19 +61,17 @@ struct AbsentOperator {
     const char* name;
     const char* note;
 };
+constexpr const char* kFilmic =
+    "Blender's Filmic is a table without a formula: give its LUT file as the operator "
+    "(docs/choosing.md); filmic formulas are hable and unreal";
+constexpr const char* kTony =
+    "Tony McMapface is a table without a formula: give its LUT file as the operator "
+    "(docs/choosing.md)";
 constexpr AbsentOperator kAbsentOperators[] = {
-    {"filmic",
-     "Filmic Blender is a table without a formula (docs/choosing.md); expected its file as the "
-     "operator"},
-    {"filmic_blender",
-     "Filmic Blender is a table without a formula (docs/choosing.md); expected its file as the "
-     "operator"},
-    {"tony_mcmapface",
-     "Tony McMapface is a table without a formula (docs/choosing.md); expected its file as the "
-     "operator"},
-    {"tonymcmapface",
-     "Tony McMapface is a table without a formula (docs/choosing.md); expected its file as the "
-     "operator"},
+    {"filmic", kFilmic},
+    {"filmic_blender", kFilmic},
+    {"tony_mcmapface", kTony},
+    {"tonymcmapface", kTony},
     {"opendrt", "OpenDRT cannot be derived from its description (docs/choosing.md)"},
 };
 
@@ -106,8 +104,10 @@ NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) 
     for (const AbsentOperator& absent : kAbsentOperators) {
         if (is_same_name(absent.name, name)) note = std::string("; ") + absent.note;
     }
-    throw Error("operator is " + std::string(name) + "; expected an id from `tonewright list`" +
-                note + did_you_mean(name, choices));
+    // A name that people look for has a better answer than the nearest one.
+    const std::string shown = trimmed(name).empty() ? "empty" : std::string(name);
+    throw Error("operator is " + shown + "; expected an id from `tonewright list`" +
+                (note.empty() ? did_you_mean(name, choices) : note));
 }
 
 const Operator& require_no_surroundings(const Operator& op) {
@@ -206,6 +206,30 @@ void add_setting(Settings& settings, const Operator& op, std::string_view name,
                 "; expected it once");
 }
 
+/// Where a parameter is that the operator does not have: its looks, and other dialects.
+std::string elsewhere(const Operator& op, std::string_view name) {
+    const auto has = [&](const Operator& other) {
+        return std::any_of(
+            other.parameters.begin(), other.parameters.end(),
+            [&](const ParameterSpec& spec) { return is_same_name(spec.name, name); });
+    };
+    if (has(op)) return {};
+    const std::string folded = folded_name(name);
+    std::vector<std::string> looks;
+    for (const Look& look : op.looks) {
+        if (folded_name(look.id).find(folded) != std::string::npos) looks.push_back(look.id);
+    }
+    std::string note;
+    if (!looks.empty()) note += "; looks for it: --look " + join_choices(looks);
+    if (op.dialects.empty()) return note;
+    std::vector<std::string> others;
+    for (const Operator& other : all_operators()) {
+        if (other.dialects == op.dialects && has(other)) others.push_back(other.id);
+    }
+    if (!others.empty()) note += "; operators with it: " + join_choices(others);
+    return note;
+}
+
 void set_look(std::string& look, const Operator& op, std::string_view wanted) {
     if (wanted.empty() || is_same_name(look, wanted)) return;
     if (!look.empty())
@@ -251,7 +275,17 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
     for (const auto& [name, value] : settings)
         add_setting(all, op, name, value);
     set_look(named.look, op, look);
-    ResolvedOperator resolved = resolve(op, named.preset, all, named.look);
+    ResolvedOperator resolved = [&] {
+        try {
+            return resolve(op, named.preset, all, named.look);
+        } catch (const Error& e) {
+            for (const auto& [name, value] : all) {
+                if (const std::string note = elsewhere(op, name); !note.empty())
+                    throw Error(e.what() + note);
+            }
+            throw;
+        }
+    }();
     resolved.owner = named.owner;
     return resolved;
 }

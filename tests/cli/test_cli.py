@@ -301,6 +301,10 @@ def check_apply_many(report, command, scratch, picture):
     code, _, err = applied("in/a.exr", "@list.txt", "-o", "o7", "--lut", "x.cube", "--input-encoding", "acescct",
                            "--format", "png")
     report.check("apply --lut: several", code == CHECK_FAILED and os.listdir(scratch / "o7") == ["a.png"], err)
+    (scratch / "y.cube").write_text("LUT_1D_SIZE 2\n0 0 0\n1 1 1\n")
+    code, _, err = applied("in/a.exr", picture, "-o", "o8", "--lut", "y.cube", "--format", "png")
+    report.check("apply --lut: an unknown encoding is told once", code == OK and len(os.listdir(scratch / "o8")) == 2
+                 and err.count("y.cube: the file does not say which encoding it expects") == 1, err)
 
 
 def check_limits(report, command, scratch, picture):

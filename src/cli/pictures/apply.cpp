@@ -196,7 +196,9 @@ std::vector<MeteredPicture> meter_each(std::vector<FrameFiles>& files,
     return metered;
 }
 
-void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles& file) {
+/// @param stated  the input that the LUT states; the first picture finds it, and says so
+void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles& file,
+               std::optional<LutOptions>& stated) {
     WriteOptions write = write_options_of(options, file.out);
     Warnings warnings(file.out);
     write.warn = [hear = warnings.hearer()](std::string text) {
@@ -215,8 +217,8 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
         source = converted_picture(source, color);
         color = source_color(source.spec(), kAutoInput);
     }
-    const LutOptions input = with_stated_input(options.lut, color.name);
-    const Pipeline before = before_lut("apply", input, options, color);
+    if (!stated) stated = with_stated_input(options.lut, color.name);
+    const Pipeline before = before_lut("apply", *stated, options, color);
     auto quiet = std::make_optional<QuietStderr>();
     const SimdEngine encode(before);
     OIIO::ImageBuf result;
@@ -251,15 +253,16 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
     });
     (void)write_options_of(options, files.files.front().out);
     check_overwriting("apply", files.files, options.is_in_place);
+    std::optional<LutOptions> stated;
     if (files.is_single) {
-        apply_lut(options, lut, files.files.front());
+        apply_lut(options, lut, files.files.front(), stated);
         return kOk;
     }
     require_writable_folder(options.output);
     int exit_code = kOk;
     for (FrameFiles& file : files.files) {
         try {
-            apply_lut(options, lut, file);
+            apply_lut(options, lut, file, stated);
         } catch (const Error& e) {
             file.error = e.what();
             exit_code = kCheckFailed;

@@ -100,8 +100,17 @@ Axis resized(const Axis& axis, int size) {
     constexpr double kRounding = 1e-6;  // of a pixel
     const double factor = static_cast<double>(size) / (axis.end - axis.begin);
     const Axis wide = with_black(axis, factor);
+    const auto place = [&](int at) { return (static_cast<double>(at) - axis.begin) * factor; };
+    constexpr double kFarthest = 1 << 30;
+    for (const double at : {axis.begin * factor, place(wide.data_begin), place(wide.data_end)}) {
+        if (!(std::fabs(at) < kFarthest)) {
+            throw PictureError(
+                fmt::format("the window would begin at {:.0f}; expected less than {:.0f} pixels "
+                            "from 0",
+                            at, kFarthest));
+        }
+    }
     const auto begin = static_cast<int>(std::lround(axis.begin * factor));
-    const auto place = [&](int at) { return (at - axis.begin) * factor; };
     return {begin, begin + size,
             begin + static_cast<int>(std::floor(place(wide.data_begin) + kRounding)),
             begin + static_cast<int>(std::ceil(place(wide.data_end) - kRounding))};

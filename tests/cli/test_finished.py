@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, skip  # noqa: E402
+from pictures import Report, share_of, skip  # noqa: E402
 
 try:
     import OpenImageIO as oiio
@@ -71,7 +71,8 @@ def check_formats(c):
         ("h.ppm", "uint8", {}, None),
         ("i.exr", "half", {"colorInteropID": "srgb_rec709_display"}, "sRGB by colorInteropID"),
     ]
-    for name, kind, attributes, why in finished:
+    write(c.folder / "a.png", "uint8")
+    for name, kind, attributes, why in share_of(finished, 3):
         write(c.folder / name, kind, attributes)
         lines = c.run(name, "out.png", "--operator", "hable")
         begin = f"{name}: finished for a display ({why or ''}"
@@ -82,7 +83,8 @@ def check_formats(c):
     scenes = [("a.exr", "half", {}), ("b.hdr", "float", {}), ("c.tif", "float", {}), ("d.dpx", "uint16", {"oiio:BitsPerSample": 10}),
               ("f.exr", "half", {"colorInteropID": "srgb_rec709_scene"}),
               ("g.exr", "half", {"colorInteropID": "pq_rec2020_display"}), ("h.exr", "half", {"colorInteropID": "lin_ap1_scene"})]
-    for name, kind, attributes in scenes:
+    write(c.folder / "a.exr", "half")
+    for name, kind, attributes in share_of(scenes, 3):
         write(c.folder / name, kind, attributes)
         c.says(f"{name}: {kind} {attributes or ''}: a scene", c.run(name, "out.png", "--operator", "hable"), [])
     for display in ("rec2100_pq", "rec2100_hlg"):

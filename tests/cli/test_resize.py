@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, need_program, run, skip  # noqa: E402
+from pictures import Report, need_program, run, share_of, skip  # noqa: E402
 
 try:
     import OpenImageIO as oiio
@@ -98,17 +98,19 @@ class Check:
 
 
 def check_sizes(c):
-    for width, height in ((101, 67), (200, 67), (64, 64)):
-        path = write(c.path("scene.exr"), scene(height, width))
-        for size, theirs in (("50x20", "50x20"), ("50", "50x0"), ("100", "100x0"), ("50%", "50%"), ("150%", "150%"),
-                             ("33.3%", "33.3%"), ("1", "1x1"), ("300x10", "300x10"), ("1x1", "1x1")):
-            is_ = c.apply(path, size, *LINEAR)
-            expected = c.oiiotool(path, theirs, "--clamp:min=0:max=1")
-            _, data, full = read(expected)
-            if data != full:  # OpenImageIO 2.4 makes the data window of 50% of 101 pixels 52 wide, the display window 51
-                run("oiiotool", expected, "--crop", f"{full[2]}x{full[3]}+0+0", "-o", c.path("cut.exr"))
-                expected = c.path("cut.exr")
-            c.same(f"{width}x{height} to {size}", is_, expected)
+    sizes = (("50x20", "50x20"), ("50", "50x0"), ("100", "100x0"), ("50%", "50%"), ("150%", "150%"), ("33.3%", "33.3%"),
+             ("1", "1x1"), ("300x10", "300x10"), ("1x1", "1x1"))
+    cases = [(shape, size) for shape in ((101, 67), (200, 67), (64, 64)) for size in sizes]
+    for (width, height), (size, theirs) in share_of(cases, 4):
+        path = write(c.path(f"scene{width}.exr"), scene(height, width))
+        is_ = c.apply(path, size, *LINEAR)
+        expected = c.oiiotool(path, theirs, "--clamp:min=0:max=1")
+        _, data, full = read(expected)
+        if data != full:  # OpenImageIO 2.4 makes the data window of 50% of 101 pixels 52 wide, the display window 51
+            run("oiiotool", expected, "--crop", f"{full[2]}x{full[3]}+0+0", "-o", c.path("cut.exr"))
+            expected = c.path("cut.exr")
+        c.same(f"{width}x{height} to {size}", is_, expected)
+    path = write(c.path("scene.exr"), scene(64, 64))
     c.apply(path, "0.001%", *LINEAR)
     c.report.check("a picture has a pixel at least", read(c.path("result.exr"))[0].shape == (1, 1, 3))
 
@@ -330,7 +332,7 @@ def check_refusals(c):
         (["--resize="], 2, "tonewright: apply: --resize has no value; expected --resize SIZE"),
         (["--resize=5", "--lut=none.cube"], 2, "--lut excludes --resize"),
     ]
-    for options, code, message in cases:
+    for options, code, message in share_of(cases, 3):
         done = subprocess.run([c.command, "apply", path, c.path("no.exr"), *options], capture_output=True, text=True, check=False)
         said = done.stderr.strip()
         c.report.check(f"refused: {' '.join(options)}", done.returncode == code and len(said.splitlines()) == 1

@@ -44,6 +44,12 @@ TEST(Resize, WindowsCoverTheSamePartOfThePicture) {
     // Overscan counts.
     EXPECT_THROW((void)resized_spec(spec, "50%", 599), PictureError);
     EXPECT_NO_THROW((void)resized_spec(spec, "50%", 600));
+    OIIO::ImageSpec far = spec;
+    far.x = 1 << 29;
+    EXPECT_THROW((void)resized_spec(far, "1000%", 1e12), PictureError);
+    far = spec;
+    far.full_width = far.full_height = 1;
+    EXPECT_THROW((void)resized_spec(far, "1920", kMaxPixels), PictureError);
     spec.depth = 2;
     EXPECT_THROW((void)resized_spec(spec, "50%", kMaxPixels), PictureError);
 }

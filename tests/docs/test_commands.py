@@ -112,6 +112,7 @@ class Files:
         (folder / "colors.txt").write_text("0.18 0.18 0.18\n4 0.5 0.1\n")
         self.run("oiiotool", "render.exr", "--ch", "R,G,B,A=0.5", "-o", "rgba.exr")
         self.run("oiiotool", "render.exr", "--clamp:min=0:max=1", "-d", "uint8", "-o", "logo.png")
+        self.run("tonewright", "apply", "-q", "render.exr", "photo.png", "--operator", "hable")
         self.run("oiiotool", "--colorconfig", "ocio_config/config.ocio", "render.exr", "--colorconvert", "lin_rec709", "ACEScct",
                  "-o", "acescct.exr")
         self.run("oiiotool", "render.exr", "--resize", "32x18", "-o", "small.exr")

@@ -29,7 +29,7 @@ from operators.defects import OPERATORS as DEFECTS  # noqa: E402
 from pictures import PROJECT, Report  # noqa: E402
 from test_into import ACES  # noqa: E402
 
-PROGRAMS = ("tonewright oiiotool ffmpeg ./run export echo python3 cmake ctest npm g++ iinfo idiff maketx iv rv blender "
+PROGRAMS = ("tonewright oiiotool ffmpeg ./run export echo python3 cmake ctest npm g++ ssh iinfo idiff maketx iv rv blender "
             "dpkg-buildpackage tests/install/release.sh tests/install/debian.sh").split()
 COMMAND = re.compile(rf"(\$ )?((?:\w+=\S+ )?(?:{'|'.join(map(re.escape, PROGRAMS))})(?: .*)?)")
 GENERATED = {DOCS / "operators.md", *(DOCS / "operators").glob("*.md")}
@@ -44,6 +44,7 @@ NOT_RUN = {
     "tests/install/debian.sh": "needs a Debian mirror",
     "python3 tests/faults/test_faults.py": "takes minutes; the test faults runs it with fewer points",
     "python3 tests/tags/peers.py": "needs every other program; it writes the table of its page",
+    "ssh farm": "there is no farm; the test cli.output has its part after the pipe",
     "cmake --install": "the test install runs it",
     "g++ main.cpp": "the test install compiles and links programs so",
     "export OIIO_LIBRARY_PATH=": "a path of an installed plugin; the test clients.plugin runs the next commands",
@@ -119,6 +120,12 @@ class Files:
         for number in (1, 2, *range(1001, 1101)):
             shutil.copy(folder / "small.exr", folder / f"shot.{number:04d}.exr")
         (folder / "studio.ocio").write_text(ACES)
+        self.run("oiiotool", "rgba.exr", "--dup", "--chnames", "diffuse.R,diffuse.G,diffuse.B,diffuse.A", "--chappend", "-o", "layers.exr")
+        shutil.copy(folder / "rgba.exr", folder / "flame.exr")
+        names = ("rgba.left", "rgba.right")
+        parts = [word for name in names for word in ("render.exr", "--attrib", "oiio:subimagename", name)]
+        self.run("oiiotool", *parts, "--siappendall", "-o", "stereo.exr")
+        self.run("oiiotool", "logo.png", "--dup", "--siappend", "-o", "page.tif")
 
     def run(self, *command):
         subprocess.run(command, cwd=self.folder, check=True, env=self.environment)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numeric>
 #include <span>
@@ -659,7 +660,8 @@ void write_catalogue(const std::string& folder) {
         }
     }
     for (const auto& [name, files] : subfolders)
-        write_generated_files(folder + "/" + name, files, "MANIFEST.csv");
+        write_generated_files((std::filesystem::path(folder) / name).string(), files,
+                              "MANIFEST.csv");
     for (const GeneratedFile& file : index)
         write_text_atomically(folder + "/" + file.path, file.contents);
 }

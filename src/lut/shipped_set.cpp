@@ -25,6 +25,20 @@ const std::vector<std::string> kOperators = {
 /// Decimals of the numbers in .cube files.
 constexpr int kDecimals = 4;
 
+const std::string& display_of(const LutPresetSet& set) {
+    return set.display.empty() ? set.host->display : set.display;
+}
+
+/// "resolve"; with another display than the application's "resolve_rec2100_pq".
+std::string id_of(const LutPresetSet& set) {
+    return set.display.empty() ? set.host->id : set.host->id + "_" + set.display;
+}
+
+std::string title_of(const LutPresetSet& set) {
+    return set.display.empty() ? set.host->title
+                               : set.host->title + ", " + find_display(set.display).title;
+}
+
 /// Identifier of an encoding in a file name, without parameters.
 std::string name_part(const std::string& id) { return id.substr(0, id.find(':')); }
 
@@ -35,7 +49,7 @@ ShippedLut plan(const LutPresetSet& set, const std::string& id) {
     LutRequest& request = planned.request;
     request.encoding = parse_input_encoding(host.encoding);
     request.view =
-        make_view(resolve_operator(id), lut_input_of(host, find_operator(id)), 0, host.display);
+        make_view(resolve_operator(id), lut_input_of(host, find_operator(id)), 0, display_of(set));
     request.format = host.format;
     if (!host.takes_any_primaries || !is_per_channel(build_view(request.view))) {
         const auto own = set.sizes.find(id);
@@ -48,7 +62,7 @@ ShippedLut plan(const LutPresetSet& set, const std::string& id) {
     std::string taken = name_part(host.encoding);
     if (request.view.input != request.encoding.default_input)
         taken += request.view.input.substr(std::string_view("lin").size());
-    const std::string stem = fmt::format("{}_{}_to_{}", id, taken, host.display);
+    const std::string stem = fmt::format("{}_{}_to_{}", id, taken, display_of(set));
     planned.path = fmt::format("{}/{}.{}", host.id, stem,
                                is_picture_format(host.format) ? "png" : name_of(host.format));
     planned.thumbnail = fmt::format("{}/thumbnails/{}.png", host.id, stem);
@@ -143,7 +157,7 @@ std::string overview(const std::vector<ShippedLut>& luts) {
     std::string head = "| operator |";
     std::string rule = "|---|";
     for (const LutPresetSet* set : sets_of(luts)) {
-        head += fmt::format(" [{0}](#{1}) |", set->host->title, set->host->id);
+        head += fmt::format(" [{0}](#{1}) |", title_of(*set), id_of(*set));
         rule += "---|";
     }
     std::string text = head + "\n" + rule + "\n";
@@ -179,7 +193,7 @@ std::string lamps_of(const LutRinging& ringing) {
 
 std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts) {
     const LutApplication& host = *set.host;
-    std::string text = fmt::format("\n<a id=\"{}\"></a>\n## {}\n\n", host.id, host.title);
+    std::string text = fmt::format("\n<a id=\"{}\"></a>\n## {}\n\n", id_of(set), title_of(set));
     if (!set.also.empty()) text += "Also for " + set.also + ".\n\n";
     text +=
         fmt::format("{}. {}\n\n", markdown_steps(host.steps),
@@ -192,13 +206,14 @@ std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts
         const LutError& error = error_at_host(lut);
         if (is_first) {
             text += fmt::format(
-                "Each file: `tonewright bake OPERATOR --for {} --size SIZE{} -o FILE`, without "
+                "Each file: `tonewright bake OPERATOR --for {}{} --size SIZE{} -o FILE`, without "
                 "--size where the file has entries; {} interpolation, {:+.1f} stops from 0.18 at "
                 "input 1.\n\n"
                 "| operator | file | size | input | output | photographs: 99.9 % | mean | above "
                 "one code | lamps | every color: 99.9 % | picture |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|\n",
-                host.id, r.decimals ? fmt::format(" --decimals {}", *r.decimals) : "",
+                host.id, set.display.empty() ? "" : " --display " + set.display,
+                r.decimals ? fmt::format(" --decimals {}", *r.decimals) : "",
                 is_trilinear(host) ? "trilinear" : "tetrahedral",
                 std::log2(r.encoding.scene_hi / 0.18));
         }
@@ -265,6 +280,13 @@ const std::vector<LutPresetSet>& lut_preset_sets() {
          .approximate = {"aces_13", "gt7"},
          .nearer = "a [DCTL](../docs/shaders.md) (`tonewright shader gt7 --for resolve -o "
                    "gt7.dctl`); for footage within Rec.709, `--input lin_rec709`"},
+        {.host = &find_lut_application("resolve"),
+         .operators = {"agx_blender", "aces_13", "aces_20", "gt7"},
+         .size = 33,
+         .approximate = {"aces_20"},
+         .nearer =
+             "65 nodes (`tonewright bake gt7 --for resolve --display rec2100_pq -o gt7.cube`)",
+         .display = "rec2100_pq"},
         {.host = &find_lut_application("nuke"),
          .also = "every application with pictures in ACEScct: After Effects, Houdini, Flame, "
                  "Baselight",

@@ -27,6 +27,8 @@ struct LutPresetSet {
     std::set<std::string> approximate = {};
     /// What is nearer to the operators: the rest of a sentence that begins with "Nearer: ".
     std::string nearer = {};
+    /// Replaces the application's display.
+    std::string display = {};
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<LutPresetSet>& lut_preset_sets();
 

@@ -26,7 +26,7 @@ TEST(ShippedSet, ItsSetsAreOfApplicationsAndOperatorsThatThereAre) {
     std::set<std::string> hosts;
     std::set<std::string> operators;
     for (const LutPresetSet& set : lut_preset_sets()) {
-        EXPECT_TRUE(hosts.insert(set.host->id).second) << set.host->id;
+        EXPECT_TRUE(hosts.insert(set.host->id + set.display).second) << set.host->id;
         EXPECT_FALSE(set.operators.empty());
         for (const std::string& id : set.operators)
             operators.insert(find_operator(id).id);

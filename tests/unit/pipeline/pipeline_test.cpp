@@ -446,9 +446,9 @@ TEST(Resolve, UnknownNamesGetTheNearest) {
     EXPECT_EQ(resolve_error("foo"), "operator is foo; expected an id from `tonewright list`");
     EXPECT_EQ(
         resolve_error("filmic"),
-        "operator is filmic; expected an id from `tonewright list`; Filmic Blender is a table "
-        "without a formula (docs/choosing.md); expected its file as the operator; did you mean "
-        "unreal?");
+        "operator is filmic; expected an id from `tonewright list`; Blender's Filmic is a table "
+        "without a formula: give its LUT file as the operator (docs/choosing.md); filmic formulas "
+        "are hable and unreal");
     EXPECT_EQ(resolve_error("agx_blender:punchy"),
               "agx_blender: preset is punchy; expected formula or hdr; did you mean look=punchy?");
     EXPECT_EQ(resolve_error("photoshop"),

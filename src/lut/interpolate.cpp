@@ -325,8 +325,9 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
         result.delta_e_mean = seen.mean;
     }
     (void)comparison.errors(photograph_light(space.primaries), shown, wanted);
-    result.photographs = photograph_error(
-        request.view, shown, wanted, lut.is_half_domain ? kInfinity : request.encoding.scene_hi);
+    double brightest_held = request.encoding.scene_hi;
+    if (lut.is_half_domain) brightest_held = kInfinity;
+    result.photographs = photograph_error(request.view, shown, wanted, brightest_held);
     return result;
 }
 

@@ -171,7 +171,7 @@ OCIO::ConstColorSpaceRcPtr interchange_space(const AnyConfig& any, const std::st
         throw FileError("config: " + path + " has no role " + role +
                         "; expected both interchange roles, which define its color spaces");
     }
-    const OCIO::ConstColorSpaceRcPtr space = config->getColorSpace(name);
+    OCIO::ConstColorSpaceRcPtr space = config->getColorSpace(name);
     if (!space || space->isData()) {
         throw FileError(fmt::format(
             "config: {}: role {} is {}, which is {}; expected {}", path, role, one_line(name),
@@ -405,8 +405,9 @@ ExtendedConfig reduce(const ConfigLocation& location) {
 }
 
 /// @param replaced  the record of an earlier run that this one replaces
-ExtendedConfig extend(const ConfigLocation& location, std::string text, ConfigOptions options,
-                      AddedRecord record, const std::optional<FoundRecord>& replaced) {
+ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
+                      ConfigOptions options, AddedRecord record,
+                      const std::optional<FoundRecord>& replaced) {
     const std::string& path = location.file;
     // A user who adds an operator to a config wants that one only.
     if (options.views.empty() && !options.custom.empty()) options.views = {"none"};

@@ -92,6 +92,21 @@ void print_every_color(const std::string& file, const LutError& error) {
                              rounded_up(error.mean)));
 }
 
+/// @param is_own_input  the steps are for this input
+void print_steps(const LutApplication& host, const LutRequest& request, const std::string& steps,
+                 bool is_own_input) {
+    if (is_own_input) {
+        print_result(fmt::format("{}: {}", host.title, steps));
+        return;
+    }
+    const std::string input = "scene-linear " + find_input_space(request.view.input).title;
+    print_result(fmt::format(
+        "{}: convert {} before this file, which does not take the "
+        "application's usual input",
+        host.title,
+        request.encoding.is_linear ? "to " + input : input + " to " + request.encoding.title));
+}
+
 void bake_chain(const Options& options, const LutRequest& request, LutNodes nodes,
                 const LutApplication* host) {
     const LutChain chain = make_lut_chain(request, nodes);
@@ -106,7 +121,7 @@ void bake_chain(const Options& options, const LutRequest& request, LutNodes node
     print_result(fmt::format("{}: {}, scene-linear in ({}); on photographs {}", options.file,
                              chain.operations, request.view.input, to_string(photographs)));
     print_every_color(options.file, chain.error);
-    if (host) print_result(fmt::format("{}: {}", host->title, host->chain_steps));
+    if (host) print_steps(*host, request, host->chain_steps, !options.given.contains("--input"));
 }
 
 void bake_one(Options& options) {
@@ -180,15 +195,7 @@ void bake_one(Options& options) {
     }
     if (!host) return;
     const bool is_chain = request.encoding.is_linear && reads_chains(*host, request.format);
-    const std::string& steps = is_chain ? host->chain_steps : host->steps;
-    if (is_chain || own_host) {
-        print_result(fmt::format("{}: {}", host->title, steps));
-    } else {
-        print_result(fmt::format(
-            "{}: convert scene-linear {} to {} before this file, which does "
-            "not take the application's usual input",
-            host->title, find_input_space(request.view.input).title, request.encoding.title));
-    }
+    print_steps(*host, request, is_chain ? host->chain_steps : host->steps, own_host != nullptr);
 }
 
 int run_bake(Options& options) {

@@ -152,7 +152,7 @@ def check_browser(report, site, folder):
             const query = document.querySelector('.md-search__input'); query.focus(); query.value = 'uncharted';
             query.dispatchEvent(new Event('keyup', { bubbles: true })); query.dispatchEvent(new Event('input', { bubbles: true })); })()"""
         found = "[...document.querySelectorAll('.md-search-result__link')].some((link) => link.href.includes('operators/hable.html'))"
-        end = time.monotonic() + 30
+        end = time.monotonic() + 120  # a busy machine took more than 30
         while not page.run(found) and time.monotonic() < end:
             page.run(search)
             page.receive(1)

@@ -143,8 +143,11 @@ Suggestions complete(const std::vector<CommandTable>& tables,
 
 std::string to_text(const Suggestions& suggestions) {
     std::string text;
-    for (const auto& [word, meaning] : suggestions.words)
-        text += word + (meaning.empty() ? "" : "\t" + meaning) + "\n";
+    for (const auto& [word, meaning] : suggestions.words) {
+        text += word;
+        if (!meaning.empty()) text.append("\t").append(meaning);
+        text += '\n';
+    }
     if (suggestions.has_files) text += ":files\n";
     if (suggestions.has_folders) text += ":folders\n";
     return text;

@@ -70,7 +70,8 @@ class Dots {
 
   private:
     [[nodiscard]] std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y * width() + x);
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width()) +
+               static_cast<std::size_t>(x);
     }
     [[nodiscard]] bool is_marked(int column) const { return marks_[index(column, 0)]; }
     [[nodiscard]] int row_of(double value) const {
@@ -118,6 +119,7 @@ std::string terminal_plot(
     const double white = std::log2(1 / kMidGray);
     Dots dots(text);
     std::vector<double> stops;
+    stops.reserve(static_cast<std::size_t>(dots.width()));
     for (int x = 0; x < dots.width(); ++x)
         stops.push_back(kLowest + static_cast<double>(kHighest - kLowest) * x / (dots.width() - 1));
     const std::vector<double> values = curve(scene_of(stops));

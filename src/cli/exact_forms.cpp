@@ -141,8 +141,7 @@ class Forms {
         std::vector<double> wanted(light.size());
         ReferenceEngine(build_view(formula)).run_rgb(light.data(), shown.data(), light.size() / 3);
         ReferenceEngine(build_view(own)).run_rgb(light.data(), wanted.data(), light.size() / 3);
-        const PhotographError error =
-            photograph_error(own, shown, wanted, std::numeric_limits<double>::infinity());
+        const PhotographError error = photograph_error(own, shown, wanted, nullptr);
         return {error.p999, language + " of the formula",
                 command("shader", op, application.id, application.extension)};
     }

@@ -208,10 +208,9 @@ class Bins {
         edges_[0] = 0;
         edges_[1] = kHistogramBlack;
         // The last bin has what is clamped to 1.
-        for (int i = first_ + 1; i <= last_; ++i) {
-            edges_[static_cast<std::size_t>(i - first_ + 1)] =
-                std::max(std::exp2(scale_.at(i)), kHistogramBlack);
-        }
+        std::size_t place = 2;
+        for (int i = first_ + 1; i <= last_; ++i)
+            edges_[place++] = std::max(std::exp2(scale_.at(i)), kHistogramBlack);
         // As few digits as distinguish the edges, because the table shares the cache with pixels.
         for (digits_ = kFewestDigits; digits_ < kMostDigits; ++digits_) {
             if (!has_narrow_bin()) break;

@@ -16,6 +16,12 @@ BakedLut measured(Lut lut, const LutRequest& request, bool trilinear, bool is_fi
     return {std::move(lut), error, {}, is_fitted, std::move(ringing)};
 }
 
+/// The bounds of `smooth`, as they were when it was the default.
+constexpr double kSmoothFall = 1.0 / 255;
+constexpr RayBounds kSmoothBounds = {.largest_fall = 0.6 * kSmoothFall, .has_band = true};
+
+bool has_no_smooth_ring(const LutRinging& ringing) { return ringing.fall <= kSmoothFall; }
+
 /// Fits nodes that follow the operator along rising exposure, if possible.
 BakedLut smooth(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
     BakedLut baked = measured(lut, request, trilinear, is_fitted);
@@ -23,13 +29,15 @@ BakedLut smooth(Lut lut, const LutRequest& request, bool trilinear, bool is_fitt
     // this error.
     constexpr double kHopeless = 0.3;
     const LutRinging& ringing = baked.ringing;
-    if ((!rings(ringing) && ringing.p999 <= kFittedRayError) || ringing.p999 > kHopeless)
+    if ((has_no_smooth_ring(ringing) && ringing.p999 <= kFittedRayError) ||
+        ringing.p999 > kHopeless)
         return baked;
-    fit_rays(lut, request, trilinear, {});
+    RayFit(lut, request, trilinear, RayNodes::all).fit(lut, kSmoothBounds);
     BakedLut calm = measured(std::move(lut), request, trilinear, is_fitted);
-    const bool is_better = rings(calm.ringing) == rings(baked.ringing)
+    const bool was_right = has_no_smooth_ring(baked.ringing);
+    const bool is_better = has_no_smooth_ring(calm.ringing) == was_right
                                ? calm.ringing.p999 < baked.ringing.p999
-                               : rings(baked.ringing);
+                               : !was_right;
     return is_better ? calm : baked;
 }
 
@@ -43,8 +51,11 @@ BakedLut complete(BakedLut baked, const LutRequest& request, bool trilinear) {
 BakedLut bake_smooth(const LutRequest& request, const Lut& sampled, bool trilinear) {
     BakedLut fitted = smooth(fit_lut(request, sampled), request, trilinear, true);
     BakedLut plain = smooth(sampled, request, trilinear, false);
-    for (bool (*is_right)(const LutRinging&) :
-         {follows_operator, +[](const LutRinging& ringing) { return !rings(ringing); }}) {
+    for (bool (*is_right)(const LutRinging&) : {+[](const LutRinging& ringing) {
+                                                    return has_no_smooth_ring(ringing) &&
+                                                           ringing.p999 <= kLargestRayError;
+                                                },
+                                                has_no_smooth_ring}) {
         const bool fitted_is_right = is_right(fitted.ringing);
         if (fitted_is_right == is_right(plain.ringing)) continue;
         return fitted_is_right ? fitted : plain;
@@ -69,22 +80,23 @@ BakedLut bake_for_photographs(const LutRequest& request, const Lut& sampled, boo
     const auto is_better = [&](const BakedLut& a, const BakedLut& b) {
         return rings(a.ringing) == rings(b.ringing) ? badness(a) < badness(b) : rings(b.ringing);
     };
-    std::optional<BakedLut> best;
-    const auto offer = [&](const Lut& lut, bool is_fitted, std::optional<RayFit> rays) {
-        Lut own = lut;
-        if (rays) fit_rays(own, request, trilinear, *rays);
-        BakedLut baked = measured(std::move(own), request, trilinear, is_fitted);
-        const bool rings_still = rings(baked.ringing);
-        if (!best || is_better(baked, *best)) best = std::move(baked);
-        return !rings_still;
+    const RayFit rays(sampled, request, trilinear, RayNodes::unused);
+    const auto without_falls = [&](Lut& lut) { rays.fit(lut, {}); };
+    const Lut fitted = fit_lut(request, sampled, kPhotographShare, without_falls);
+    BakedLut best = measured(fitted, request, trilinear, true);
+    const auto offer = [&](Lut lut, bool is_fitted) {
+        BakedLut baked = measured(std::move(lut), request, trilinear, is_fitted);
+        if (is_better(baked, best)) best = std::move(baked);
     };
-    const RayFit falls = {.has_band = false, .spares_photographs = true};
-    const RayFit band = {.has_band = true, .spares_photographs = true};
-    const Lut fitted = fit_lut(request, sampled, kPhotographShare);
-    if (!offer(fitted, true, std::nullopt)) (void)offer(fitted, true, falls);
-    (void)offer(fitted, true, band);
-    if (!offer(sampled, false, std::nullopt)) (void)offer(sampled, false, falls);
-    return *best;
+    if (!follows_operator(best.ringing)) {
+        Lut near_lamps = fitted;
+        rays.fit(near_lamps, {.has_band = true});
+        offer(std::move(near_lamps), true);
+    }
+    Lut plain = sampled;
+    without_falls(plain);
+    offer(std::move(plain), false);
+    return best;
 }
 
 BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "tonewright/color.h"
@@ -60,6 +61,9 @@ struct CubeFitOptions {
     unsigned thread_count = 0;
     /// Share of colors that are drawn from photographs, [0, 1]. They count where they are dense.
     double photograph_share = 0;
+    /// Changes nodes as little as possible so that they meet bounds. With it, two more steps of the
+    /// fit follow, each from nodes that meet the bounds, and the result meets them, too.
+    std::function<void(std::vector<double>& nodes)> constrain = {};
 };
 
 /// RGB at the nodes, blue fastest: nodes[3 * ((r * edge + g) * edge + b) + c], in double from the

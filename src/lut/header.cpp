@@ -40,7 +40,8 @@ std::string to_string(const PhotographError& error) {
                                           percent(error.share), error.worst)
                             : ", no pixel more than one off";
     if (error.outside > 0)
-        text += fmt::format("; {} % are brighter than the input holds", percent(error.outside));
+        text += fmt::format("; {} % are brighter or more saturated than the input holds",
+                            percent(error.outside));
     return text;
 }
 

@@ -190,7 +190,7 @@ double percentile_of(const std::vector<double>& errors, const std::vector<double
 }  // namespace
 
 PhotographError photograph_error(const View& view, std::vector<double> shown,
-                                 std::vector<double> wanted, double brightest_held) {
+                                 std::vector<double> wanted, const InputEncoding* encoding) {
     constexpr double kWithin = 0.999;
     constexpr double kCode = 1.0 / 255;
     const PhotographColors& colors = photograph_colors();
@@ -198,14 +198,21 @@ PhotographError photograph_error(const View& view, std::vector<double> shown,
     const DisplayCode code(view);
     code.encode(shown);
     code.encode(wanted);
+    // What is darker than the input holds becomes its black. Below 0 are colors outside its
+    // primaries; conversions round 0 to less than this.
+    constexpr double kRounding = 1e-6;
+    const double darkest_held = encoding ? std::min(encoding->scene_lo, 0.0) - kRounding : 0;
     PhotographError error;
     std::vector<double> errors;
     std::vector<double> shares;
     double inside = 0;
     for (std::size_t i = 0; i < shown.size(); i += 3) {
         const double share = colors.share[i / 3];
-        const float brightest = *std::max_element(&light[i], &light[i] + 3);
-        const bool is_inside = static_cast<double>(brightest) <= brightest_held;
+        const bool is_inside =
+            !encoding || std::all_of(&light[i], &light[i] + 3, [&](float channel) {
+                const auto x = static_cast<double>(channel);
+                return x >= darkest_held && x <= encoding->scene_hi;
+            });
         double worst = 0;
         for (std::size_t c = 0; is_inside && c < 3; ++c)
             worst = std::max(worst, std::fabs(shown[i + c] - wanted[i + c]));
@@ -215,8 +222,8 @@ PhotographError photograph_error(const View& view, std::vector<double> shown,
         error.mean += shares.back() * worst;
         if (worst > kCode) error.share += share;
     }
-    constexpr double kRounding = 1e-12;
-    error.outside = 1 - inside > kRounding ? 1 - inside : 0;
+    constexpr double kSumRounding = 1e-12;
+    error.outside = 1 - inside > kSumRounding ? 1 - inside : 0;
     if (!(inside > 0)) return error;
     error.mean /= inside;
     error.share /= inside;
@@ -325,9 +332,8 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
         result.delta_e_mean = seen.mean;
     }
     (void)comparison.errors(photograph_light(space.primaries), shown, wanted);
-    double brightest_held = request.encoding.scene_hi;
-    if (lut.is_half_domain) brightest_held = kInfinity;
-    result.photographs = photograph_error(request.view, shown, wanted, brightest_held);
+    result.photographs = photograph_error(request.view, shown, wanted,
+                                          lut.is_half_domain ? nullptr : &request.encoding);
     return result;
 }
 

@@ -197,7 +197,43 @@ LutRinging measure_ringing(const Lut& lut, const LutRequest& request, bool trili
     return result;
 }
 
-void fit_rays(Lut& lut, const LutRequest& request, bool trilinear, const RayFit& options) {
+struct RayFit::Prepared {
+    Rays rays;
+    DisplayCode code;
+    std::vector<NodeWeights> weights;
+    /// How far a node moves; 0: it stays.
+    std::vector<double> mobility;
+};
+
+RayFit::RayFit(const Lut& lut, const LutRequest& request, bool trilinear, RayNodes nodes) {
+    const auto edge = static_cast<std::size_t>(lut.size);
+    Rays rays = make_rays(dense_colors(), lut, request);
+    const DisplayCode code(request.view);
+    for (std::vector<double>& wanted : rays.wanted)
+        code.encode(wanted);
+    std::vector<NodeWeights> weights;
+    weights.reserve(rays.input.size() / 3);
+    for (std::size_t i = 0; i < rays.input.size(); i += 3) {
+        weights.push_back(
+            node_weights({rays.input[i], rays.input[i + 1], rays.input[i + 2]}, edge, trilinear));
+    }
+    std::vector<double> mobility(edge * edge * edge, 1);
+    if (nodes == RayNodes::unused) {
+        // Nodes that photographs use a thousand times more move a thousand times less.
+        constexpr double kUnused = 1e-5;
+        mobility = photograph_shares(lut, request, trilinear);
+        for (double& m : mobility)
+            m = 1 / (1 + m / kUnused);
+        for (std::size_t i = 0; i < edge; ++i)
+            mobility[i * (1 + edge + edge * edge)] = 0;
+    }
+    prepared_ = std::make_unique<const Prepared>(
+        Prepared{std::move(rays), code, std::move(weights), std::move(mobility)});
+}
+
+RayFit::~RayFit() = default;
+
+void RayFit::fit(Lut& lut, const RayBounds& bounds) const {
     // Most rounds only check rays that broke a bound in the previous round.
     constexpr int kRounds = 128;
     constexpr int kAllEvery = 8;
@@ -205,30 +241,11 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear, const RayFit&
     // If both bounds cannot be met, the last rounds fix the falls, because they are visible as
     // rings.
     constexpr int kFallsOnly = 40;
-    // As for kFittedRayError.
-    constexpr double kTolerance = 0.6 * kLargestFall;
-    const auto edge = static_cast<std::size_t>(lut.size);
-    Rays rays = make_rays(dense_colors(), lut, request);
-    const DisplayCode code(request.view);
-    std::vector<NodeWeights> weights;
-    weights.reserve(rays.input.size() / 3);
-    for (std::size_t i = 0; i < rays.input.size(); i += 3) {
-        weights.push_back(
-            node_weights({rays.input[i], rays.input[i + 1], rays.input[i + 2]}, edge, trilinear));
-    }
+    const auto& [rays, code, weights, mobility] = *prepared_;
     const auto [lowest, highest] = std::minmax_element(lut.values.begin(), lut.values.end());
     const float lo = *lowest;
     const float hi = *highest;
-    // Nodes that photographs use a thousand times more move a thousand times less.
-    constexpr double kUnused = 1e-4;
-    std::vector<double> mobility(edge * edge * edge, 1);
-    if (options.spares_photographs) {
-        mobility = photograph_shares(lut, request, trilinear);
-        for (double& m : mobility)
-            m = 1 / (1 + m / kUnused);
-    }
     in_parallel(3, 0, [&](std::size_t c) {
-        code.encode(rays.wanted[c]);
         const auto value_at = [&](const NodeWeights& at) {
             double value = 0;
             for (std::size_t k = 0; k < at.count; ++k)
@@ -266,7 +283,7 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear, const RayFit&
         };
         for (int round = 0; round < kRounds; ++round) {
             const bool takes_all = round % kAllEvery == 0;
-            const bool has_band = options.has_band && round < kRounds - kFallsOnly;
+            const bool has_band = bounds.has_band && round < kRounds - kFallsOnly;
             bool is_done = true;
             for (std::size_t ray = 0; ray < rays.count; ++ray) {
                 if (!takes_all && !is_active[ray]) continue;
@@ -286,10 +303,10 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear, const RayFit&
                     look(ray * kPlaces + i);
                 }
                 for (int k = 0; k < kFallsEach; ++k) {
-                    const Fall fall = largest_fall(shown, wanted, kTolerance);
+                    const Fall fall = largest_fall(shown, wanted, bounds.largest_fall);
                     if (fall.size <= 0) break;
                     is_active[ray] = true;
-                    const double least = shown[fall.from] - fall.allowed - kTolerance;
+                    const double least = shown[fall.from] - fall.allowed - bounds.largest_fall;
                     Slopes slopes;
                     slopes.add(at[fall.from], -1);
                     slopes.add(at[fall.to], 1);

@@ -200,7 +200,8 @@ Lut sample_lut(const LutRequest& request) {
     return lut;
 }
 
-Lut fit_lut(const LutRequest& request, const Lut& sampled, double photograph_share) {
+Lut fit_lut(const LutRequest& request, const Lut& sampled, double photograph_share,
+            const std::function<void(Lut&)>& constrain) {
     if (sampled.dimension != 3)
         throw Error("bake: a 1D table has no grid to fit; expected a 3D LUT");
     CubeProblem problem;
@@ -213,18 +214,30 @@ Lut fit_lut(const LutRequest& request, const Lut& sampled, double photograph_sha
         std::minmax_element(sampled.values.begin(), sampled.values.end());
     problem.lo = static_cast<double>(*lowest);
     problem.hi = static_cast<double>(*highest);
-    const std::vector<double> nodes = fit_cube(problem, {.photograph_share = photograph_share});
     const auto n = static_cast<std::size_t>(sampled.size);
+    // The entry of a cube, blue fastest, that is entry i of a LUT, red fastest.
+    const auto in_cube = [&](std::size_t i) { return (i % n * n + i / n % n) * n + i / (n * n); };
     Lut lut = sampled;
-    for (std::size_t i = 0; i < n * n * n; ++i) {
-        const std::size_t r = i % n;
-        const std::size_t g = i / n % n;
-        const std::size_t b = i / (n * n);
-        for (std::size_t c = 0; c < 3; ++c) {
-            lut.values[3 * i + c] = static_cast<float>(
-                std::clamp(nodes[3 * ((r * n + g) * n + b) + c], problem.lo, problem.hi));
+    const auto take = [&](const std::vector<double>& nodes) {
+        for (std::size_t i = 0; i < n * n * n; ++i) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                lut.values[3 * i + c] = static_cast<float>(
+                    std::clamp(nodes[3 * in_cube(i) + c], problem.lo, problem.hi));
+            }
         }
+    };
+    CubeFitOptions options{.photograph_share = photograph_share, .constrain = {}};
+    if (constrain) {
+        options.constrain = [&](std::vector<double>& nodes) {
+            take(nodes);
+            constrain(lut);
+            for (std::size_t i = 0; i < n * n * n; ++i) {
+                for (std::size_t c = 0; c < 3; ++c)
+                    nodes[3 * in_cube(i) + c] = static_cast<double>(lut.values[3 * i + c]);
+            }
+        };
     }
+    take(fit_cube(problem, options));
     return lut;
 }
 

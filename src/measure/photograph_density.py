@@ -13,9 +13,10 @@ per million of a histogram over three axes, a tenth of them spread over neighbor
     saturation  1 - smallest/largest channel, at the ends SATURATIONS; above 1: outside Rec.709
     hue         of the hexcone, in steps of 15 degrees from red through yellow
 
-The committed numbers come from these pictures: of openexr-images, Bonita (MultiResolution), CandleGlass, Cannon, Desk, MtTamWest,
-StillLife, Tree, GoldenGate, KernerEnvLatLong and Beachball/singlepart.0001; memorial.hdr of P. Debevec; and of the npm package
-@pmndrs/assets 1.7.0 (CC0), apartment, bridge, esplanade, forest, hall, night, park, studio and sunset. tests/parity/clients/test_photographs.py measures on others.
+The committed numbers come from these pictures: of openexr-images, Beachball/singlepart.0001, Bonita, Cannon, Carrots, Desk,
+GoldenGate, KernerEnvLatLong, MtTamWest, MultiView/Adjuster and StillLife; and of the npm package @pmndrs/assets 1.7.0 (CC0), city,
+lab, night, park, sunset, venice and warehouse. Of 34 pictures, sorted by their share of saturated pixels, they are one of each pair
+of neighbors; tests/parity/clients/test_photographs.py measures on the others.
 """
 
 import sys

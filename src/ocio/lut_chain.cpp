@@ -110,8 +110,7 @@ LutError measure(const View& view, const Lowered& lowered) {
         result.delta_e_mean = seen.mean;
     }
     comparison.run(photograph_light(space.primaries), shown, wanted);
-    result.photographs =
-        photograph_error(view, shown, wanted, std::numeric_limits<double>::infinity());
+    result.photographs = photograph_error(view, shown, wanted, nullptr);
     return result;
 }
 

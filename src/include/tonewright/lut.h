@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -87,8 +88,8 @@ struct PhotographError {
     double mean = 0;
     /// Share of the pixels whose error is more than a code of 8 bits, [0, 1].
     double share = 0;
-    /// Share of the pixels of photographs that are brighter than the input can be; they are left
-    /// out.
+    /// Share of the pixels of photographs that are brighter than the input can be or outside its
+    /// primaries; they are left out.
     double outside = 0;
     /// The color that contributes most beyond `p999`: "+3.4 stops, saturated blue".
     std::string worst;
@@ -124,9 +125,12 @@ struct LutError {
 /// view than a sampled one: measure both.
 /// @param sampled           the result of sample_lut()
 /// @param photograph_share  share of the colors that come from photographs, [0, 1]
+/// @param constrain         changes nodes as little as possible so that they meet bounds; called
+///                          between steps of the fit and at its end
 /// @throws Error            for a 1D table
 [[nodiscard]] TONEWRIGHT_API Lut fit_lut(const LutRequest& request, const Lut& sampled,
-                                         double photograph_share = 0);
+                                         double photograph_share = 0,
+                                         const std::function<void(Lut&)>& constrain = {});
 
 /// Output of the LUT for its input `rgb` in [0, 1] (for a half-domain table: scene-linear). Linear
 /// in 1D; tetrahedral or trilinear in 3D.
@@ -155,8 +159,8 @@ struct LutRinging {
     std::string channel;  // "red"
     double stops = 0;     // from 0.18
 };
-/// One 8-bit code: a LUT with a larger fall rings.
-inline constexpr double kLargestFall = 1.0 / 255;
+/// Two 8-bit codes: a LUT with a larger fall rings.
+inline constexpr double kLargestFall = 2.0 / 255;
 /// A LUT with a larger `p999` does not follow the operator in saturated light.
 inline constexpr double kLargestRayError = 0.02;
 /// A 1D table never rings.

@@ -233,7 +233,7 @@ def bake(op: str, file: Path, *, host: str = "", format: str | None = None, inpu
 
     The result has dimension and size, or operations (of a clf or ctf of scene-linear input), interpolation, max_error and
     mean_error (of every color of the input, code values), and photographs: p999 and mean (99.9 % and mean of the pixels of photographs, code values), above_one_code (share of the
-    pixels with an error above 1/255) and outside (share that is brighter than the input holds).
+    pixels with an error above 1/255) and outside (share that is brighter or more saturated than the input holds).
 
     Example: tonewright.bake("agx_blender", "agx.cube", host="resolve")
     """

@@ -114,11 +114,16 @@ std::string rounded(double value, int digits) {
     return {text.data(), end.ptr};
 }
 
-std::string three_digits_up(double value) {
-    if (!(value > 0) || !std::isfinite(value)) return fmt::format("{}", value);
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
-    // The small subtraction keeps 1.23e-7, which is not a double, from becoming 1.24e-7.
-    return fmt::format("{:.2e}", std::ceil(value / unit - 1e-9) * unit);
+double round_up(double value, int digits) {
+    if (!(value > 0) || !std::isfinite(value)) return value;
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) + 1 - digits);
+    // The small subtraction keeps 1.3e-7, which is not a double, from becoming 1.4e-7.
+    return std::ceil(value / unit - 1e-9) * unit;
+}
+
+std::string rounded_up(double value, int digits) {
+    if (!(value > 0) || !std::isfinite(value)) return shortest(value);
+    return fmt::format("{:.{}e}", round_up(value, digits), digits - 1);
 }
 
 std::string shortest(double value) {

@@ -29,8 +29,11 @@ TONEWRIGHT_API void drop_zero_before_point(std::string& text, std::size_t begin)
 /// So many significant digits, or fewer: "0.0029", "1.3e+04".
 [[nodiscard]] TONEWRIGHT_API std::string rounded(double value, int digits);
 
-/// Three significant digits, rounded up: the text is never less than the value, and at most 1 %
-/// more.
-[[nodiscard]] TONEWRIGHT_API std::string three_digits_up(double value);
+/// The next number of so many significant digits that is not less than the value. Numbers that are
+/// not positive or not finite stay.
+[[nodiscard]] TONEWRIGHT_API double round_up(double value, int digits);
+/// The same as text with an exponent, such as "1.3e-07". Errors are printed so, because the text
+/// must not be less than the measured error.
+[[nodiscard]] TONEWRIGHT_API std::string rounded_up(double value, int digits = 2);
 
 TONEWRIGHT_NAMESPACE_END

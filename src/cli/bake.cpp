@@ -15,7 +15,6 @@
 #include "cli/suggestions.h"
 #include "lut/lut_warnings.h"
 #include "lut/shipped_set.h"
-#include "measure/error_metric.h"
 #include "ocio/lut_chain.h"
 #include "pipeline/stand_ins.h"
 #include "tonewright/lut.h"

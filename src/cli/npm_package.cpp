@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
+#include "base/format_number.h"
 #include "base/little_endian.h"
 #include "base/strings.h"
 #include "cli/json.h"
-#include "measure/error_metric.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

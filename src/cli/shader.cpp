@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/atomic_file.h"
+#include "base/format_number.h"
 #include "base/input_file.h"
 #include "base/strings.h"
 #include "cli/lut_input.h"
@@ -12,7 +13,6 @@
 #include "cli/npm_package.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
-#include "measure/error_metric.h"
 #include "pipeline/stand_ins.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/registry.h"

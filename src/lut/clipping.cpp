@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "measure/error_metric.h"
+#include "base/format_number.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 

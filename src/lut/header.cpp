@@ -10,18 +10,13 @@
 #include "base/little_endian.h"
 #include "base/strings.h"
 #include "lut/shaper.h"
-#include "measure/error_metric.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
 namespace {
 
-/// Two digits, rounded up: "0.05", "6.2", "41".
-std::string two_digits_up(double value) {
-    if (!(value > 0)) return "0";
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-    return fmt::format("{:.3g}", std::ceil(value / unit - 1e-9) * unit);
-}
+/// Two digits, rounded up: "0.05", "6.2", "41", "260".
+std::string two_digits_up(double value) { return rounded(round_up(value, 2), 3); }
 
 /// Hash of the numbers, not of the file.
 std::string hash_of(const Lut& lut) { return content_hash(little_endian_bytes(lut.values)); }
@@ -82,12 +77,12 @@ std::vector<std::string> error_lines(const LutError& e) {
     std::vector<std::string> lines = {fmt::format(
         "Error against the double-precision operator, {} interpolation, inside the "
         "input range: max {}, 99.9 % {}, mean {}",
-        e.interpolation, three_digits_up(e.max), three_digits_up(e.p999), three_digits_up(e.mean))};
+        e.interpolation, rounded_up(e.max, 3), rounded_up(e.p999, 3), rounded_up(e.mean, 3))};
     if (e.delta_e_max > 0) {
         lines.push_back(fmt::format(
             "Color difference dE_ITP (ITU-R BT.2124), {} interpolation: max {}, 99.9 % {}, mean {}",
-            e.interpolation, three_digits_up(e.delta_e_max), three_digits_up(e.delta_e_p999),
-            three_digits_up(e.delta_e_mean)));
+            e.interpolation, rounded_up(e.delta_e_max, 3), rounded_up(e.delta_e_p999, 3),
+            rounded_up(e.delta_e_mean, 3)));
     }
     return lines;
 }
@@ -135,7 +130,7 @@ std::vector<std::string> lut_header(const Lut& lut, const LutRequest& r, const L
             "{}, {} interpolation, along rising exposure of the test chart's lamps and hues: {}; "
             "99.9 % of the errors up to {}",
             rings(*ringing) ? "RINGS" : "Does not ring", e.interpolation, to_string(*ringing),
-            three_digits_up(ringing->p999)));
+            rounded_up(ringing->p999, 3)));
     }
     lines.push_back(fmt::format("{}, size {}, numbers {}", lut.dimension == 3 ? "3D LUT" : "1D LUT",
                                 lut.size, hash_of(lut)));

@@ -8,7 +8,6 @@
 #include "base/strings.h"
 #include "lut/in_parallel.h"
 #include "lut/shipped_set.h"
-#include "measure/error_metric.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -100,9 +99,9 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string error_fields(const LutError& error) {
-    return fmt::format("{},{},{},{},{},{}", three_digits_up(error.max), three_digits_up(error.p999),
-                       three_digits_up(error.mean), three_digits_up(error.delta_e_max),
-                       three_digits_up(error.delta_e_p999), three_digits_up(error.delta_e_mean));
+    return fmt::format("{},{},{},{},{},{}", rounded_up(error.max, 3), rounded_up(error.p999, 3),
+                       rounded_up(error.mean, 3), rounded_up(error.delta_e_max, 3),
+                       rounded_up(error.delta_e_p999, 3), rounded_up(error.delta_e_mean, 3));
 }
 
 std::string manifest(const std::vector<ShippedLut>& luts) {
@@ -123,9 +122,9 @@ std::string manifest(const std::vector<ShippedLut>& luts) {
             lut.lut.size, r.bits ? std::to_string(*r.bits) : "",
             r.decimals ? std::to_string(*r.decimals) : "", lut.is_fitted ? "fitted" : "sampled",
             error_at_host(lut).interpolation, error_fields(lut.tetrahedral),
-            error_fields(lut.trilinear), three_digits_up(lut.ringing.p999),
-            three_digits_up(lut.ringing.fall), three_digits_up(photographs.p999),
-            three_digits_up(photographs.mean), three_digits_up(photographs.share),
+            error_fields(lut.trilinear), rounded_up(lut.ringing.p999, 3),
+            rounded_up(lut.ringing.fall, 3), rounded_up(photographs.p999, 3),
+            rounded_up(photographs.mean, 3), rounded_up(photographs.share, 3),
             content_hash(lut.contents));
     }
     return text;

@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <span>
 #include <vector>
 
-#include "base/format_number.h"
 #include "tonewright/engine.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -95,15 +93,6 @@ std::vector<double> delta_e_itp(const Display& display, std::span<const double> 
                                 std::span<const double> code_b, double unit_nits) {
     return delta_e_itp(ictcp_of_codes(display, code_a, unit_nits),
                        ictcp_of_codes(display, code_b, unit_nits));
-}
-
-std::string rounded_up(double value) {
-    if (!(value > 0) || !std::isfinite(value)) return shortest(value);
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
-    char text[32];
-    // The small subtraction keeps 1.3e-7, which is not a double, from becoming 1.4e-7.
-    std::snprintf(text, sizeof text, "%.1e", std::ceil(value / unit - 1e-9) * unit);
-    return text;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -41,8 +41,4 @@ struct ErrorStats {
 [[nodiscard]] TONEWRIGHT_API std::vector<double> delta_e_itp(std::span<const double> ictcp_a,
                                                              std::span<const double> ictcp_b);
 
-/// Two significant digits, rounded up, so that the printed number is never less than the measured
-/// one.
-[[nodiscard]] TONEWRIGHT_API std::string rounded_up(double value);
-
 TONEWRIGHT_NAMESPACE_END

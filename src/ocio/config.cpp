@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "base/format_number.h"
 #include "base/random.h"
 #include "base/strings.h"
 #include "ocio/config_builder.h"

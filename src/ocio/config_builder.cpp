@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/config_builder.h"
-#include "base/strings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,6 +11,8 @@
 #include <sstream>
 #include <utility>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "lut/in_parallel.h"
 #include "ocio/inverse.h"
 #include "ocio/operator_facts.h"

@@ -7,7 +7,7 @@
 #include <array>
 #include <iterator>
 
-#include "measure/error_metric.h"
+#include "base/format_number.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

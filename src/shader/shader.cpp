@@ -15,7 +15,6 @@
 #include "base/number_cache.h"
 #include "base/strings.h"
 #include "expr/nodes.h"
-#include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "shader/first_order.h"
 #include "shader/fitted_curves.h"

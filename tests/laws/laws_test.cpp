@@ -17,7 +17,6 @@
 #include "base/random.h"
 #include "engine/tape.h"
 #include "full_counts.h"
-#include "measure/error_metric.h"
 #include "measure/laws.h"
 #include "measure/sample_set.h"
 #include "resolve_any.h"

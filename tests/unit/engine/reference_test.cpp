@@ -10,7 +10,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "base/format_number.h"
 #include "base/random.h"
 #include "engine/tape.h"
 #include "full_counts.h"
@@ -679,25 +678,6 @@ TEST(Summary, ChannelErrorTakesTheWorst) {
         EXPECT_EQ(summarise(error).max, kInfinity) << "NaN in channel " << c;
         broken[c] = std::numeric_limits<float>::infinity();
         EXPECT_EQ(channel_error(truth.data(), broken.data()), kInfinity);
-    }
-}
-
-TEST(Summary, RoundedUpIsNeverLess) {
-    EXPECT_EQ(rounded_up(0), "0");
-    EXPECT_EQ(rounded_up(1.3e-7), "1.3e-07");
-    EXPECT_EQ(rounded_up(1.31e-7), "1.4e-07");
-    EXPECT_EQ(rounded_up(1.3000001e-7), "1.4e-07");
-    EXPECT_EQ(rounded_up(9.91e-5), "1.0e-04");
-    EXPECT_EQ(rounded_up(0.001), "1.0e-03");
-    EXPECT_EQ(rounded_up(25.1), "2.6e+01");
-    EXPECT_EQ(rounded_up(kInfinity), "inf");
-    SampleRandom random(12);
-    for (int i = 0; i < 10000; ++i) {
-        const double x = std::exp2(random.uniform(-60, 20));
-        const double printed = std::stod(rounded_up(x));
-        // 1e-9 of the second digit: what separates 1.3e-7 from the double next to it.
-        ASSERT_GE(printed, x * (1 - 1e-9)) << shortest(x);
-        ASSERT_LE(printed, x * 1.1 * (1 + 1e-9)) << shortest(x) << ": by less than a second digit";
     }
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <set>
 
-#include "base/format_number.h"
 #include "lut/shipped_set.h"
 #include "tonewright/lut.h"
 #include "tonewright/registry.h"
@@ -33,14 +32,6 @@ TEST(ShippedSet, ItsSetsAreOfApplicationsAndOperatorsThatThereAre) {
     }
     EXPECT_EQ(operators.size(), 10U);
     EXPECT_GE(hosts.size(), 9U);
-}
-
-TEST(ShippedSet, FiguresHaveThreeDigitsAndAreNeverLessThanMeasured) {
-    EXPECT_EQ(three_digits_up(0), "0");
-    EXPECT_EQ(three_digits_up(0.00123), "1.23e-03");
-    EXPECT_EQ(three_digits_up(0.0012301), "1.24e-03");
-    EXPECT_EQ(three_digits_up(9.991), "1.00e+01");
-    EXPECT_EQ(three_digits_up(1.23e-7), "1.23e-07");
 }
 
 TEST(ShippedSet, DecimalsOfACubeAreThoseOfItsNumbers) {

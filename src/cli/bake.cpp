@@ -13,6 +13,7 @@
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
+#include "lut/display_code.h"
 #include "lut/lut_warnings.h"
 #include "lut/shipped_set.h"
 #include "ocio/lut_chain.h"
@@ -66,39 +67,61 @@ void take_from_host(Options& options, const LutApplication& host, LutFormat form
             options.input =
                 lut_input_of(host, *resolve_operator(options.op, {}, {}, operator_files()).op);
     }
+    // A size counts the entries of a 1D table.
+    const bool is_table = options.one || (!options.three && is_table_for(host, options.view()));
+    if (options.size && !is_table && format == host.format) check_lut_size(host, *options.size);
     if (is_given("--format")) return;  // another file than the application's own
     if (is_given("--max-error") && is_strip(host.format)) {
         throw Error(
             fmt::format("bake: --max-error is given for {}; expected none, because its size is {}",
                         host.id, host.size));
     }
-    if (options.size && *options.size > host.largest_size) {
-        throw Error(fmt::format("bake: size is {}; expected at most {} for {}", *options.size,
-                                host.largest_size, host.id));
-    }
     if (!is_given("--depth")) options.bits = host.bits;
-    // A view of one curve for each channel is exact as a 1D table, if the application can convert
-    // to its primaries.
-    if (host.takes_any_primaries && !options.three && is_per_channel(build_view(options.view())))
-        return;
-    if (!is_given("--size") && !is_given("--max-error") && !options.one) options.size = host.size;
-    if (!options.one) options.three = true;
+    if (is_table) return;
+    if (!is_given("--size") && !is_given("--max-error")) options.size = host.size;
+    options.three = true;
 }
 
-void print_every_color(const std::string& file, const LutError& error) {
-    print_result(fmt::format("{}: on every color of its input: error max {}, 99.9 % {}, mean {}",
-                             file, rounded_up(error.max), rounded_up(error.p999),
-                             rounded_up(error.mean)));
+void print_every_color(const std::string& file, const View& view, const LutError& error) {
+    print_result(
+        fmt::format("{}: on every color of its input, in {}: error max {}, 99.9 % {}, mean {}",
+                    file, is_light(view) ? "display-linear values" : "code values of 0 to 1",
+                    rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean)));
 }
 
-/// @param is_own_input  the steps are for this input
-void print_steps(const LutApplication& host, const LutRequest& request, const std::string& steps,
-                 bool is_own_input) {
-    if (is_own_input) {
-        print_result(fmt::format("{}: {}", host.title, steps));
+/// Replaces a word, if the text has it.
+std::string with_word(std::string text, std::string_view word, std::string_view by) {
+    if (const std::size_t at = text.find(word); at != std::string::npos)
+        text.replace(at, word.size(), by);
+    return text;
+}
+
+/// The application's instructions for this file. Names with characters that mean something in a
+/// shell or in a filter of ffmpeg stay FILE.
+std::string steps_for(const LutApplication& host, const LutRequest& request,
+                      const std::string& file) {
+    constexpr std::string_view kPlain =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-/";
+    const std::string& steps =
+        request.encoding.is_linear ? lut_steps_of(host, request.format) : host.steps;
+    const bool is_plain = file.find_first_not_of(kPlain) == std::string::npos;
+    return with_word(with_word(steps, "the file's primaries",
+                               find_input_space(request.view.input).primaries.name),
+                     "FILE", is_plain ? file : "FILE");
+}
+
+void print_steps(const LutApplication& host, const LutRequest& request, const std::string& file) {
+    if (request.view.display != host.display && !takes_any_display(host)) {
+        print_result(fmt::format("{}: these steps are for the display {}; the file is for {}",
+                                 host.title, host.display, request.view.display));
+    }
+    const bool has_its_encoding = request.encoding.id == parse_input_encoding(host.encoding).id;
+    if (has_usual_input(host, request) || (host.takes_any_primaries && has_its_encoding)) {
+        print_result(fmt::format("{}: {}", host.title, steps_for(host, request, file)));
         return;
     }
-    const std::string input = "scene-linear " + find_input_space(request.view.input).title;
+    const std::string input =
+        "scene-linear " + with_word(find_input_space(request.view.input).title, "Linear ", "");
     print_result(fmt::format(
         "{}: convert {} before this file, which does not take the "
         "application's usual input",
@@ -119,8 +142,8 @@ void bake_chain(const Options& options, const LutRequest& request, LutNodes node
     write_text_atomically(options.file, chain.contents);
     print_result(fmt::format("{}: {}, scene-linear in ({}); on photographs {}", options.file,
                              chain.operations, request.view.input, to_string(photographs)));
-    print_every_color(options.file, chain.error);
-    if (host) print_steps(*host, request, host->chain_steps, !options.given.contains("--input"));
+    print_every_color(options.file, request.view, chain.error);
+    if (host) print_steps(*host, request, options.file);
 }
 
 void bake_one(Options& options) {
@@ -165,12 +188,16 @@ void bake_one(Options& options) {
         return;
     }
     const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
-    // The application's own input: nothing of it can be changed.
-    const LutApplication* own_host =
-        host && !options.given.contains("--input") && !options.given.contains("--input-encoding")
-            ? host
-            : nullptr;
     const Lut& lut = baked.lut;
+    if (options.max_error && host && request.format == host->format && lut.dimension == 3 &&
+        lut.size > host->largest_size) {
+        throw Error(fmt::format(
+            "bake: max error is {}; expected one that {} grid points a side have, because {} reads "
+            "no more ({} have it)",
+            shortest(*options.max_error), host->largest_size, host->id, lut.size));
+    }
+    // The application's own input: nothing of it can be changed.
+    const LutApplication* own_host = host && has_usual_input(*host, request) ? host : nullptr;
     const LutError& error = baked.error;
     request.size = lut.size;
     if (const std::string text = lut_warning(options.file, request, baked, own_host); !text.empty())
@@ -186,15 +213,13 @@ void bake_one(Options& options) {
         lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
         error.interpolation, baked.is_fitted ? ", fitted nodes" : "",
         to_string(error.photographs)));
-    print_every_color(options.file, error);
+    print_every_color(options.file, request.view, error);
     const std::string clipped = to_string(measure_clipping(request, lut));
     if (!clipped.empty()) {
         print_result(fmt::format("{}: clips what {} would show {}", options.file,
                                  request.view.op.label, clipped));
     }
-    if (!host) return;
-    const bool is_chain = request.encoding.is_linear && reads_chains(*host, request.format);
-    print_steps(*host, request, is_chain ? host->chain_steps : host->steps, own_host != nullptr);
+    if (host) print_steps(*host, request, options.file);
 }
 
 int run_bake(Options& options) {

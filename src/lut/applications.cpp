@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The LUTs that applications expect. Sources: their manuals, unless an entry names another source.
+#include <fmt/format.h>
+
 #include "base/strings.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -17,9 +19,9 @@ const std::vector<LutApplication>& all_lut_applications() {
          "rec1886",
          {},
          "tetrahedral",
-         "Project Settings > Color Management: Open LUT Folder, copy, Update Lists; 3D Lookup "
-         "Table "
-         "Interpolation: Tetrahedral. In the timeline, two nodes: Color Space Transform with the "
+         "Project Settings > Color Management: Open LUT Folder, copy, Update Lists; for 3D "
+         "LUTs, 3D Lookup Table Interpolation: Tetrahedral. In the timeline, two nodes: Color "
+         "Space Transform with the "
          "file's primaries as output color space, DaVinci Intermediate as output gamma, tone "
          "mapping None, gamut mapping None; then LUTs, the file",
          "",
@@ -116,7 +118,10 @@ const std::vector<LutApplication>& all_lut_applications() {
          "import the .cube; Volume > Tonemapping > Mode External > Lookup Texture. Its size must "
          "be "
          "the HDRP Asset's Grading LUT Size, 32 unless changed: --size",
-         ""},
+         "",
+         false,
+         "",
+         65},  // GlobalPostProcessSettings.k_MaxLutSize
         // Core RP Library, Color.hlsl, ApplyLut2D: the slice by blue, in it u by red and v by
         // green; Unity's textures have v 0 at the bottom.
         {"unity_urp", "Unity URP", LutFormat::strip_up, 32, "srgb", "srgb", 8, "trilinear",
@@ -125,7 +130,9 @@ const std::vector<LutApplication>& all_lut_applications() {
          "Works on the displayed picture",
          ""},
         {"godot", "Godot", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
-         "import as Texture3D with 32 horizontal slices; Environment > Adjustments > Color "
+         "import as Texture3D, Slices Horizontal as many as the picture is high, 32 unless "
+         "changed: "
+         "--size; Environment > Adjustments > Color "
          "Correction: works on the displayed picture",
          ""},
         {"obs",
@@ -157,7 +164,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "trilinear",
-         "gmic in.tif FILE div[1] 255 'fill[0]' 'I(#1,R/255*32,G/255*32,B/255*32,1,0)*255' keep[0] "
+         "gmic in.tif FILE div[1] 255 'fill[0]' "
+         "'I(#1,R/255*(w#1-1),G/255*(h#1-1),B/255*(d#1-1),1,0)*255' keep[0] "
          "-o out.tif; in GIMP: Filters > G'MIC-Qt > Colors > Apply External CLUT",
          "G'MIC 2.9.4"},
         {"darktable",
@@ -248,6 +256,32 @@ std::string lut_encoding_of(const LutApplication& application, LutFormat format)
 
 const std::string& lut_steps_of(const LutApplication& application, LutFormat format) {
     return reads_chains(application, format) ? application.chain_steps : application.steps;
+}
+
+void check_lut_size(const LutApplication& application, int size) {
+    if (size <= application.largest_size) return;
+    throw Error(fmt::format("bake: size is {}; expected at most {} for {}", size,
+                            application.largest_size, application.id));
+}
+
+bool is_table_for(const LutApplication& application, const View& view) {
+    return application.takes_any_primaries && is_per_channel(build_view(view));
+}
+
+bool has_usual_input(const LutApplication& application, const LutRequest& request) {
+    const InputEncoding& encoding = request.encoding;
+    if (encoding.is_linear && reads_chains(application, request.format))
+        return request.view.input == encoding.default_input;
+    return encoding.id == parse_input_encoding(application.encoding).id &&
+           request.view.input == lut_input_of(application, *request.view.op.op);
+}
+
+bool takes_any_display(const LutApplication& application) {
+    // After a log of scene light, applications show or write the output of the LUT as it is.
+    for (const std::string_view log : {"davinci", "acescct", "logc3"}) {
+        if (application.encoding == log) return true;
+    }
+    return false;
 }
 
 std::string lut_input_of(const LutApplication& application, const Operator& op) {

@@ -438,8 +438,8 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
                   options.input, options.exposure_stops, options.display, options.reference_white);
     if (reader && !format && !is_chain) {
         request.bits = reader->bits;
-        // As `bake` does: one curve for each channel is exact as a 1D table.
-        if (!reader->takes_any_primaries || !is_per_channel(build_view(request.view))) {
+        if (!is_table_for(*reader, request.view)) {
+            if (size) check_lut_size(*reader, *size);
             request.size = reader->size;
             request.dimension = LutDimension::three;
         }
@@ -466,7 +466,8 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
         request.size = baked.lut.size;
         request.dimension = baked.lut.dimension == 3 ? LutDimension::three : LutDimension::one;
         if (const std::string text =
-                lut_warning(file, request, baked, is_own_encoding ? reader : nullptr);
+                lut_warning(file, request, baked,
+                            reader && has_usual_input(*reader, request) ? reader : nullptr);
             !text.empty())
             warn(text);
         if (is_picture_format(request.format)) {

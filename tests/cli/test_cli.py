@@ -597,6 +597,47 @@ def check_bake_warnings(report, command, scratch):
     report.check("bake of a LUT that does not ring: no warning", code == OK and not lines, err)
 
 
+def check_bake_for(report, command, scratch):
+    """The last lines of `bake --for` hold for the file: its size, its name, its input and its display."""
+    path = scratch / "steps.cube"
+
+    def steps(host, *arguments, operator="agx_blender", file=path):
+        code, out, err = call(command, ["bake", operator, "--for", host, "--size", 17, "--nodes", "sampled", *arguments, "-o", file])
+        return code, out, err.rstrip().rsplit("\n", 1)[-1]
+
+    for host, size in (("resolve", 129), ("unity", 97)):
+        code, _, err = call(command, ["bake", "agx_blender", "--for", host, "--size", size, "-o", path])
+        report.check(f"bake --for {host}: a larger size than it reads is refused", code == USAGE and not path.exists()
+                     and err.count("\n") == 1 and f"size is {size}; expected at most 65 for {host}" in err, err)
+    code, _, err = call(command, ["bake", "agx_blender", "--for", "unity", "--max-error", "0.006", "--nodes", "sampled", "-o", path])
+    report.check("bake --max-error: no size above that of the application", code == USAGE and not path.exists() and err.count("\n") == 1
+                 and "expected one that 65 grid points a side have, because unity reads no more" in err, err)
+    code, _, err = call(command, ["bake", "hable", "--for", "resolve", "--size", 8192, "-o", path])
+    report.check("bake --for resolve: a table of one curve has entries, no grid points",
+                 code == OK and "1D, 8192 entries" in err and "with Rec.709 as output color space" in err, err)
+    code, _, line = steps("resolve", "--input", "lin_ap1")
+    report.check("bake --for resolve: its steps take any primaries, and name those of the file",
+                 code == OK and line.startswith("DaVinci Resolve: Project Settings") and "with AP1 as output color space" in line, line)
+    for host, arguments, words in (
+            ("resolve", ["--input-encoding", "logc3"], "convert scene-linear ARRI Wide Gamut 3 to ARRI LogC3"),
+            ("premiere", ["--input", "lin_ap1"], "convert scene-linear ACEScg to ARRI LogC3"),
+            ("photoshop", ["--input-encoding", "acescct"], "convert scene-linear ACEScg to ACEScct")):
+        code, _, line = steps(host, *arguments)
+        report.check(f"bake --for {host} {' '.join(arguments)}: what to convert to, not its steps",
+                     code == OK and words in line and line.endswith("which does not take the application's usual input"), line)
+    code, _, line = steps("premiere", "--input-encoding", "logc3", "--input", "lin_awg3")
+    report.check("bake --for premiere with the input that it has anyway: its steps", code == OK and "Input LUT > Browse" in line, line)
+    code, _, line = steps("mpv")
+    report.check("bake --for mpv: the command has the file's name", code == OK and f"--lut={path} --lut-type" in line, line)
+    code, _, line = steps("mpv", file=scratch / "two words.cube")
+    report.check("bake --for mpv: but no name that a shell would divide", code == OK and "--lut=FILE --lut-type" in line, line)
+    for host, arguments, is_told in (("ffmpeg", ["--display", "rec2100_pq"], True), ("ffmpeg", [], False),
+                                     ("resolve", ["--display", "rec2100_pq"], False)):
+        _, _, err = call(command, ["bake", "gt7", "--for", host, "--size", 17, "--nodes", "sampled", *arguments, "-o", path])
+        report.check(f"bake --for {host} {' '.join(arguments)}: the display of the steps",
+                     ("ffmpeg: these steps are for the display rec1886; the file is for rec2100_pq" in err) == is_told, err)
+
+
 def check_exact_forms(report, command, scratch):
     """`bake --exact`: the most exact file first, by commands that run."""
     code, out, err = call(command, ["bake", "khronos_neutral", "--exact", "--for", "nuke", "--set", "start_compression=0.7"])
@@ -671,6 +712,7 @@ def check_bake(report, command, scratch):
     first = (scratch / "agx33.cube").read_bytes()
     run(command, "bake", "agx_sobotka", "-o", scratch / "agx33.cube", "--nodes", "sampled")
     check_bake_warnings(report, command, scratch)
+    check_bake_for(report, command, scratch)
     report.check("bake again: the same bytes, with the default encoding", (scratch / "agx33.cube").read_bytes() == first)
     report.check("bake: the file says input, output and error",
                  all(word in first[:1000].decode() for word in ("# Input: ACEScct", "# Output: sRGB", "# Error")))

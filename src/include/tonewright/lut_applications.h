@@ -43,6 +43,17 @@ struct LutApplication {
 [[nodiscard]] TONEWRIGHT_API std::string lut_input_of(const LutApplication& application,
                                                       const Operator& op);
 
+/// @throws Error  more grid points a side than the application reads
+TONEWRIGHT_API void check_lut_size(const LutApplication& application, int size);
+/// True if the LUT is a 1D table unless the user wants another: one curve for each channel is exact
+/// so, where the application can convert to the primaries of the view.
+[[nodiscard]] TONEWRIGHT_API bool is_table_for(const LutApplication& application, const View& view);
+/// True if the LUT takes the encoding and the primaries that the application gives it.
+[[nodiscard]] TONEWRIGHT_API bool has_usual_input(const LutApplication& application,
+                                                  const LutRequest& request);
+/// True if the instructions hold for LUTs of all displays.
+[[nodiscard]] TONEWRIGHT_API bool takes_any_display(const LutApplication& application);
+
 /// True if the application reads clf and ctf files as chains of operations on scene-linear input,
 /// and the format is one of them.
 [[nodiscard]] TONEWRIGHT_API bool reads_chains(const LutApplication& application, LutFormat format);

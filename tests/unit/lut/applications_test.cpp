@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/lut_applications.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tonewright/error.h"
+#include "tonewright/input_encoding.h"
+#include "tonewright/lut.h"
+#include "tonewright/registry.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+LutRequest request_of(const LutApplication& application, const std::string& op) {
+    LutRequest request;
+    request.format = application.format;
+    request.encoding = parse_input_encoding(application.encoding);
+    request.view =
+        make_view(resolve_operator(op), lut_input_of(application, find_operator(op)), 0, "srgb");
+    return request;
+}
+
+TEST(LutApplications, ReadTheSizeThatTheyGet) {
+    for (const LutApplication& application : all_lut_applications()) {
+        EXPECT_LE(application.size, application.largest_size) << application.id;
+        EXPECT_NO_THROW(check_lut_size(application, application.largest_size)) << application.id;
+        EXPECT_THROW(check_lut_size(application, application.largest_size + 1), Error)
+            << application.id;
+    }
+}
+
+TEST(LutApplications, ARefusedSizeIsOneLineWithTheLargest) {
+    try {
+        check_lut_size(find_lut_application("resolve"), 129);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_STREQ(e.what(), "bake: size is 129; expected at most 65 for resolve");
+    }
+}
+
+TEST(LutApplications, HaveTheirUsualInput) {
+    for (const LutApplication& application : all_lut_applications()) {
+        for (const char* op : {"agx_blender", "hable"}) {
+            LutRequest request = request_of(application, op);
+            EXPECT_TRUE(has_usual_input(application, request)) << application.id;
+            request.view.input = "lin_egamut";
+            EXPECT_FALSE(has_usual_input(application, request)) << application.id;
+        }
+    }
+    const LutApplication& premiere = find_lut_application("premiere");
+    LutRequest request = request_of(premiere, "hable");
+    request.encoding = parse_input_encoding("slog3");
+    EXPECT_FALSE(has_usual_input(premiere, request));
+}
+
+TEST(LutApplications, ThoseThatReadChainsHaveSceneLinearRec709) {
+    const LutApplication& nuke = find_lut_application("nuke");
+    LutRequest request = request_of(nuke, "hable");
+    request.format = LutFormat::ctf;
+    request.encoding = parse_input_encoding("linear");
+    EXPECT_FALSE(has_usual_input(nuke, request));  // ACEScg
+    request.view.input = "lin_rec709";
+    EXPECT_TRUE(has_usual_input(nuke, request));
+    request.format = LutFormat::cube;
+    EXPECT_FALSE(has_usual_input(nuke, request));
+}
+
+TEST(LutApplications, CurvesAreTablesWhereTheApplicationConvertsPrimaries) {
+    const LutApplication& resolve = find_lut_application("resolve");
+    EXPECT_TRUE(is_table_for(resolve, request_of(resolve, "hable").view));
+    EXPECT_FALSE(is_table_for(resolve, request_of(resolve, "agx_blender").view));
+    const LutApplication& obs = find_lut_application("obs");
+    EXPECT_FALSE(is_table_for(obs, request_of(obs, "hable").view));
+}
+
+}  // namespace
+}  // namespace tonewright

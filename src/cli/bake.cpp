@@ -8,6 +8,7 @@
 #include "base/format_number.h"
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "cli/elapsed_line.h"
 #include "cli/exact_forms.h"
 #include "cli/messages.h"
 #include "cli/picture_commands.h"
@@ -131,7 +132,10 @@ void print_steps(const LutApplication& host, const LutRequest& request, const st
 
 void bake_chain(const Options& options, const LutRequest& request, LutNodes nodes,
                 const LutApplication* host) {
-    const LutChain chain = make_lut_chain(request, nodes);
+    const LutChain chain = [&] {
+        const ElapsedLine line("bake");
+        return make_lut_chain(request, nodes);
+    }();
     const PhotographError& photographs = chain.error.photographs;
     if (options.max_error && photographs.p999 > *options.max_error) {
         throw Error(fmt::format(
@@ -187,7 +191,10 @@ void bake_one(Options& options) {
         bake_chain(options, request, nodes, host);
         return;
     }
-    const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
+    const BakedLut baked = [&] {
+        const ElapsedLine line("bake");
+        return bake_lut(request, nodes, trilinear, options.max_error);
+    }();
     const Lut& lut = baked.lut;
     if (options.max_error && host && request.format == host->format && lut.dimension == 3 &&
         lut.size > host->largest_size) {

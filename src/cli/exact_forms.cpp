@@ -7,8 +7,10 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "base/strings.h"
+#include "cli/elapsed_line.h"
 #include "lut/photograph_error.h"
 #include "measure/photographs.h"
 #include "ocio/lut_chain.h"
@@ -162,7 +164,11 @@ void print_exact_forms(const ViewOptions& options, const LutApplication* host) {
     for (const LutApplication& one : all_lut_applications()) {
         if (host && host != &one) continue;
         fmt::print("\n  {}: {}\n", one.id, one.title);
-        for (const Form& form : forms.of(one)) {
+        const std::vector<Form> found = [&] {
+            const ElapsedLine line("bake --exact");
+            return forms.of(one);
+        }();
+        for (const Form& form : found) {
             if (form.command.empty()) continue;
             fmt::print("    {:<5}  {}\n           {}\n", grade_of(kCodes * form.error), form.title,
                        form.command);

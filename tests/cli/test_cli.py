@@ -638,6 +638,24 @@ def check_bake_for(report, command, scratch):
                      ("ffmpeg: these steps are for the display rec1886; the file is for rec2100_pq" in err) == is_told, err)
 
 
+def check_bake_progress(report, command, scratch):
+    """A terminal shows the seconds of a long search for a size."""
+    ours, theirs = os.openpty()
+    run = subprocess.Popen([command, "bake", "agx_blender", "--max-error", "1e-9", "-o", scratch / "search.cube"],
+                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=theirs)
+    os.close(theirs)
+    text = b""
+    try:
+        while b"bake: 2 s" not in text:
+            text += os.read(ours, 4096)
+    except OSError:  # the run ended
+        pass
+    run.kill()
+    run.wait()
+    os.close(ours)
+    report.check("bake --max-error on a terminal: the seconds", b"\rbake: 2 s" in text, text)
+
+
 def check_exact_forms(report, command, scratch):
     """`bake --exact`: the most exact file first, by commands that run."""
     code, out, err = call(command, ["bake", "khronos_neutral", "--exact", "--for", "nuke", "--set", "start_compression=0.7"])
@@ -713,6 +731,7 @@ def check_bake(report, command, scratch):
     run(command, "bake", "agx_sobotka", "-o", scratch / "agx33.cube", "--nodes", "sampled")
     check_bake_warnings(report, command, scratch)
     check_bake_for(report, command, scratch)
+    check_bake_progress(report, command, scratch)
     report.check("bake again: the same bytes, with the default encoding", (scratch / "agx33.cube").read_bytes() == first)
     report.check("bake: the file says input, output and error",
                  all(word in first[:1000].decode() for word in ("# Input: ACEScct", "# Output: sRGB", "# Error")))

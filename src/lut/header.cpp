@@ -25,9 +25,15 @@ std::string hash_of(const Lut& lut) { return content_hash(little_endian_bytes(lu
 
 std::string to_string(const PhotographError& error) {
     constexpr double kCodes = 255;
-    std::string text =
-        fmt::format("99.9 % within {} codes of 255, mean {}", two_digits_up(kCodes * error.p999),
-                    two_digits_up(kCodes * error.mean));
+    // Code values without a limit differ by more than all codes of a display.
+    const auto codes = [&](double value) {
+        if (value > 1) return std::string("more than 255");
+        return rounded(std::min(round_up(kCodes * value, 2), kCodes), 3);
+    };
+    std::string text = error.p999 > 1
+                           ? "0.1 % more than 255 codes of 255 off"
+                           : fmt::format("99.9 % within {} codes of 255", codes(error.p999));
+    text += ", mean " + codes(error.mean);
     const auto percent = [](double share) {
         return 100 * share < 0.01 ? "less than 0.01" : two_digits_up(100 * share);
     };

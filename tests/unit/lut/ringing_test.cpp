@@ -303,6 +303,22 @@ TEST(Photographs, SmallErrorsHaveTwoDigits) {
               "99.9 % within 140 codes of 255, mean 0.1, no pixel more than one off");
 }
 
+TEST(Photographs, ErrorsHaveNoMoreThanAllCodes) {
+    PhotographError error;
+    error.p999 = 1;
+    error.mean = 0.999;
+    EXPECT_EQ(to_string(error),
+              "99.9 % within 255 codes of 255, mean 255, no pixel more than one off");
+    error.p999 = 12.5;
+    error.mean = 0.0991 / 255;
+    EXPECT_EQ(to_string(error),
+              "0.1 % more than 255 codes of 255 off, mean 0.1, no pixel more than one off");
+    error.mean = 1.5;
+    EXPECT_EQ(to_string(error),
+              "0.1 % more than 255 codes of 255 off, mean more than 255, no pixel more than one "
+              "off");
+}
+
 TEST(Photographs, ColorsHaveNames) {
     EXPECT_EQ(description_of({0.18, 0.18, 0.18}), "+0.0 stops, gray");
     EXPECT_EQ(description_of({0.72, 0.01, 0.01}), "+2.0 stops, saturated red");

@@ -136,12 +136,7 @@ void add_apply(CommandLine& program) {
         .add_flag("--dither", options->dither,
                   "dither 8-bit output by half a code value, alike in every frame")
         .group("Pictures");
-    command
-        .add("--resize", options->resize,
-             "resize first, in linear light (Lanczos): 1920x1080, 1920 (the width) or 50%")
-        .value("SIZE")
-        .suggest({"1920x1080", "1920", "50%"})
-        .group("Pictures");
+    add_resize(command, options->resize, "Pictures");
     add_picture_input(command, options->picture);
     command.option("--max-pixels")
         .describe("most pixels of a picture (default 1e9) or of a window filled with black (1e8)");
@@ -155,13 +150,12 @@ void add_apply(CommandLine& program) {
     const Option frames = add_frame_options(command, options->frames);
     for (const char* other : {"--frames", "--subimage", "--timeout"})
         legend.excludes(command.option(other));
-    legend.excludes(command.option("--resize"));
     add_exposure_options(command, options->metering, &metered);
     add_shot_options(command, options->shot, frames, &metered);
-    add_lut_options(command, options->lut, op,
-                    {"--set", "--look", "--display", "--reference-white", "--statistics",
-                     "--frames", "--false-color", "--mix", "--auto-exposure", "--subimage",
-                     "--dither", "--resize", "--timeout"});
+    add_lut_options(
+        command, options->lut, op,
+        {"--set", "--look", "--display", "--reference-white", "--statistics", "--frames",
+         "--false-color", "--mix", "--auto-exposure", "--subimage", "--dither", "--timeout"});
     command.common({"-o", "--format", "--operator", "--set", "--look", "--exposure",
                     "--auto-exposure", "--input", "--display", "-d", "--frames", "--skip-existing",
                     "--lut", "--input-encoding"});

@@ -40,6 +40,7 @@ void add_compare(CommandLine& program) {
         .show_default()
         .group(output);
     add_input_units(command, options->input_units, options->reference_white, output);
+    add_resize(command, options->resize, "Picture");
     add_picture_choice(command, options->picture, "Picture");
     const Option columns =
         command.add("--columns", options->columns, "pictures in a row (default: as fits)")
@@ -87,8 +88,9 @@ void add_compare(CommandLine& program) {
         "  tonewright compare render.exr -o sheet.png --false-color\n"
         "  tonewright compare render.exr hable:white=4 hable:white=11.2 -o sheet.jpg\n"
         "  tonewright compare render.exr clamp agx_blender --split 0.5 -o split.png");
-    command.action([options] {
+    command.action([options, command] {
         const ResultLine line;
+        options->is_resized = command.given().contains("--resize");
         picture_commands().compare(*options);
         line.print(fmt::format("compare: {} -> {}", options->in, options->file));
         return kOk;

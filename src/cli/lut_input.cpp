@@ -100,7 +100,7 @@ LutOptions with_stated_input(const LutOptions& options, const std::string& input
 Pipeline before_lut(const char* command, const LutOptions& options, const ViewOptions& view,
                     const SourceColor& input) {
     if (options.encoding.empty() || options.encoding == "none") {
-        for (const char* name : {"--input", "--exposure", "--lut-space"}) {
+        for (const char* name : {"--input", "--exposure", "--lut-space", "--resize"}) {
             if (view.given.contains(name)) {
                 throw Error(
                     std::string(command) + ": " + name + " is given for " + options.file +

@@ -491,7 +491,7 @@ std::string hint_of(std::string_view typed) {
         {"--ch", "use --layer NAME, or oiiotool --ch R,G,B before"},
         {"--autoorient", "pictures are turned by their orientation anyway"},
         {"-auto-orient", "pictures are turned by their orientation anyway"},
-        {"--resize", "use oiiotool --resize before, on scene-linear light"},
+        {"--resize", "only `apply` and `compare` resize, before the operator"},
         {"-resize", "use `tonewright apply --resize SIZE`"},
         {"--crop", "use oiiotool --crop before"},
         {"--cdl", "an ASC CDL is a LUT: use --lut FILE.cdl or .cc, or a .tone file"},

@@ -116,6 +116,9 @@ struct CompareOptions {
     std::vector<std::string> operators;
     std::string file;
     std::string pictures;
+    /// @see ReadOptions::resize
+    std::string resize;
+    bool is_resized = false;
     double exposure = 0;
     std::string input = "auto";
     std::string input_units = "relative";

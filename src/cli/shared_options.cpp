@@ -99,6 +99,15 @@ Option add_max_pixels(const Command& command, std::optional<double>& value) {
         .range(1, 1e12);
 }
 
+void add_resize(const Command& command, std::string& resize, const char* group) {
+    command
+        .add("--resize", resize,
+             "resize first, in linear light (Lanczos): 1920x1080, 1920 (the width) or 50%")
+        .value("SIZE")
+        .suggest({"1920x1080", "1920", "50%"})
+        .group(group);
+}
+
 void add_picture_choice(const Command& command, PictureChoice& choice, const char* group) {
     command
         .add("--layer", choice.layer,

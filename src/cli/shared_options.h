@@ -38,6 +38,8 @@ void add_lut_options(const Command& command, LutOptions& options, const Option& 
 /// --max-pixels.
 Option add_max_pixels(const Command& command, std::optional<double>& value);
 
+/// --resize.
+void add_resize(const Command& command, std::string& resize, const char* group);
 /// --layer, --subimage, --max-pixels.
 void add_picture_choice(const Command& command, PictureChoice& choice, const char* group);
 /// --layer, --max-pixels, --subimage, --threads, --timeout, --unpremult, --no-unpremult.

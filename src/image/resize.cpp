@@ -497,4 +497,12 @@ ImageBuf resized_light(const ImageBuf& picture, const SourceColor& color,
     return result;
 }
 
+ImageBuf resized_picture(const ImageBuf& picture, std::string_view size,
+                         const TonemapOptions& options, double max_pixels, int nthreads) {
+    const SourceColor color = source_color(picture.spec(), options.input);
+    const ImageSpec target =
+        light_spec(resized_spec(picture.spec(), size, max_pixels), color, options.unpremult);
+    return resized_light(picture, color, options, target, nthreads);
+}
+
 TONEWRIGHT_NAMESPACE_END

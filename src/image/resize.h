@@ -54,4 +54,13 @@ struct ResizeSize {
                                                           const OIIO::ImageSpec& target,
                                                           int nthreads);
 
+/// The light of a picture in memory at another size, for tonemap() with the same options.
+/// @param size  text of parse_resize()
+/// @throws PictureError  as resized_spec() and resized_light(). Error: the text, an unknown input
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf resized_picture(const OIIO::ImageBuf& picture,
+                                                            std::string_view size,
+                                                            const TonemapOptions& options,
+                                                            double max_pixels = kMaxPixels,
+                                                            int nthreads = 0);
+
 TONEWRIGHT_NAMESPACE_END

@@ -23,6 +23,7 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "image/batch_queue.h"
+#include "image/color_tags.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
@@ -43,7 +44,8 @@ void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int n
 }
 
 /// Provenance of the result, without date and machine: the same run writes the same bytes.
-void say_how(ImageSpec& picture, const TonemapOptions& options) {
+/// @param resize  @see ReadOptions::resize
+void say_how(ImageSpec& picture, const TonemapOptions& options, const std::string& resize) {
     const ResolvedOperator op =
         resolve_picture_operator(options.op, options.settings, options.look, options.others);
     const std::string exposure = shortest(options.exposure_stops);
@@ -52,11 +54,15 @@ void say_how(ImageSpec& picture, const TonemapOptions& options) {
         display += fmt::format(", reference white {}", shortest(options.reference_white));
     if (options.input_units == InputUnits::luminance) display += ", input in cd/m2";
     const std::string mix = options.mix == 1 ? "" : ", mix " + shortest(options.mix);
-    picture.attribute(
-        "Software", fmt::format("Tonewright {}: {}, exposure {}{}, display {}", TONEWRIGHT_VERSION,
-                                operator_text(op), exposure, mix, display));
+    const std::string size = resize.empty() ? "" : ", resize " + resize;
+    picture.attribute("Software", fmt::format("Tonewright {}: {}, exposure {}{}{}, display {}",
+                                              TONEWRIGHT_VERSION, operator_text(op), exposure, mix,
+                                              size, display));
     picture.attribute("tonewright:operator", operator_text(op));
     picture.attribute("tonewright:exposure", exposure);
+    // The source may be a picture that another run resized.
+    erase_attributes(picture, "tonewright:resize");
+    if (!resize.empty()) picture.attribute("tonewright:resize", resize);
     // Of native output, the name of its color may be there, and says more.
     if (options.display != kNativeOutput || !picture.find_attribute("tonewright:display"))
         picture.attribute("tonewright:display", display);
@@ -105,8 +111,8 @@ struct Batch {
 class FilePass {
   public:
     FilePass(const Tonemapper& tonemapper, PictureReader& reader, PictureWriter& writer,
-             const WriteOptions& options, int nthreads, std::size_t batch_bytes,
-             const std::string& in)
+             const WriteOptions& options, const std::string& resize, int nthreads,
+             std::size_t batch_bytes, const std::string& in)
         : tonemapper_(tonemapper),
           reader_(reader),
           writer_(writer),
@@ -114,7 +120,7 @@ class FilePass {
           source_(with_color_metadata_alone(reader.spec())) {
         ImageSpec result = result_spec(tonemapper, reader.spec());
         give_date(result, in);
-        if (options.says_how) say_how(result, tonemapper.options());
+        if (options.says_how) say_how(result, tonemapper.options(), resize);
         writer.open(result);
         result_ = with_color_metadata_alone(result);
         result_.set_format(writer.row_type());
@@ -288,7 +294,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         ImageBuf result;
         run(tonemapper, result, source, nthreads);
         give_date(result.specmod(), in);
-        if (write.says_how) say_how(result.specmod(), tonemapper.options());
+        if (write.says_how) say_how(result.specmod(), tonemapper.options(), read.resize);
         write_image_atomically(result, out, write);
         return;
     }
@@ -301,7 +307,8 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
             measure_file(in, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
                 .statistics());
     }
-    FilePass(own ? *own : tonemapper, reader, writer, write, nthreads, batch_bytes, in).run_all();
+    FilePass(own ? *own : tonemapper, reader, writer, write, read.resize, nthreads, batch_bytes, in)
+        .run_all();
 }
 
 void check_overwriting(const std::string& command, const std::vector<FrameFiles>& files,

@@ -201,9 +201,24 @@ class PythonProgress {
     std::exception_ptr error_;
 };
 
-ImageBuf tonemap_picture(const ImageBuf& source, const TonemapOptions& options, OIIO::ROI roi,
-                         int nthreads, const py::object& progress) {
+/// @param resize  @see ReadOptions::resize
+ImageBuf tonemap_picture(const ImageBuf& given, const TonemapOptions& options,
+                         const std::string& resize, OIIO::ROI roi, int nthreads,
+                         const py::object& progress) {
     PythonProgress told(progress);
+    ImageBuf light;
+    if (!resize.empty()) {
+        const py::gil_scoped_release release;
+        try {
+            check_source(given);
+            light = with_memory_for("tonemap", [&] {
+                return resized_picture(given, resize, options, kMaxPixels, nthreads);
+            });
+        } catch (const PictureError& e) {
+            throw Error(std::string("tonemap: ") + e.what());
+        }
+    }
+    const ImageBuf& source = resize.empty() ? given : light;
     ImageBuf result;
     bool is_done = false;
     {
@@ -249,11 +264,11 @@ ArrayPicture picture_of(const char* function, const py::array& given) {
     return {std::move(array), std::move(picture)};
 }
 
-py::array tonemap_array(const py::array& given, const TonemapOptions& options, int nthreads,
-                        const py::object& progress) {
+py::array tonemap_array(const py::array& given, const TonemapOptions& options,
+                        const std::string& resize, int nthreads, const py::object& progress) {
     const auto [array, source] = picture_of("tonemap", given);
-    const ImageBuf result = tonemap_picture(source, options, {}, nthreads, progress);
-    std::vector<py::ssize_t> shape = {array.shape(0), array.shape(1)};
+    const ImageBuf result = tonemap_picture(source, options, resize, {}, nthreads, progress);
+    std::vector<py::ssize_t> shape = {result.spec().height, result.spec().width};
     if (array.ndim() == 3 || result.nchannels() > 1) shape.push_back(result.nchannels());
     py::array_t<float> pixels(shape);
     result.get_pixels(result.roi(), OIIO::TypeFloat, pixels.mutable_data());
@@ -261,10 +276,14 @@ py::array tonemap_array(const py::array& given, const TonemapOptions& options, i
 }
 
 py::object tonemap_any(const py::object& image, const std::string& op, const py::object& roi,
-                       int nthreads, const py::object& progress, const py::kwargs& arguments) {
+                       int nthreads, const py::object& progress, const std::string& resize,
+                       const py::kwargs& arguments) {
+    if (!resize.empty()) (void)parse_resize(resize);
+    if (!resize.empty() && !roi.is_none())
+        throw Error("tonemap: roi is given with resize; expected one of them");
     const TonemapOptions options = parse_options(op, arguments);
     if (py::isinstance<ImageBuf>(image)) {
-        return py::cast(tonemap_picture(image.cast<const ImageBuf&>(), options,
+        return py::cast(tonemap_picture(image.cast<const ImageBuf&>(), options, resize,
                                         roi.is_none() ? OIIO::ROI() : roi.cast<OIIO::ROI>(),
                                         nthreads, progress));
     }
@@ -274,7 +293,7 @@ py::object tonemap_any(const py::object& image, const std::string& op, const py:
                              "; expected a numpy array or an OpenImageIO.ImageBuf");
     }
     if (!roi.is_none()) throw Error("tonemap: roi is given for an array; expected an ImageBuf");
-    return tonemap_array(image.cast<py::array>(), options, nthreads, progress);
+    return tonemap_array(image.cast<py::array>(), options, resize, nthreads, progress);
 }
 
 /// The last axis is red, green, blue.
@@ -701,7 +720,7 @@ PYBIND11_MODULE(_tonewright, m) {
     });
     m.attr("__version__") = TONEWRIGHT_VERSION;
     m.def("tonemap", &tw::tonemap_any, py::arg("image"), py::arg("op"), py::kw_only(),
-          py::arg("roi"), py::arg("nthreads"), py::arg("progress"));
+          py::arg("roi"), py::arg("nthreads"), py::arg("progress"), py::arg("resize"));
     m.def("tonemap_file", &tw::tonemap_into_file, py::arg("source"), py::arg("target"),
           py::arg("op"), py::kw_only(), py::arg("type"), py::arg("alpha"), py::arg("nthreads"),
           py::arg("subimage"), py::arg("layer"), py::arg("in_place"), py::arg("max_pixels"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tonewright apply --resize`: the expected pixels are those of `oiiotool --resize`, executed on the same linear picture.
+"""`--resize` of `tonewright apply` and `compare`: the expected pixels are those of `oiiotool --resize`, executed on the same linear picture.
 
     python3 tests/cli/test_resize.py build/release/bin/tonewright [FOLDER_OF_THE_PYTHON_MODULE]
 
@@ -330,7 +330,6 @@ def check_refusals(c):
         (["--resize=5000%", "--max-pixels=1e5"], 3,
          f"tonewright: {path}: cannot read: resize is 5000%: 1000 x 1000 pixels; expected at most 100000 in all (--max-pixels)"),
         (["--resize="], 2, "tonewright: apply: --resize has no value; expected --resize SIZE"),
-        (["--resize=5", "--lut=none.cube"], 2, "--lut excludes --resize"),
     ]
     for options, code, message in share_of(cases, 3):
         done = subprocess.run([c.command, "apply", path, c.path("no.exr"), *options], capture_output=True, text=True, check=False)
@@ -338,6 +337,84 @@ def check_refusals(c):
         c.report.check(f"refused: {' '.join(options)}", done.returncode == code and len(said.splitlines()) == 1
                        and (said == message or message.startswith("--") and "--resize" in said), f"{done.returncode}: {said}")
     c.report.check("and writes nothing", not c.path("no.exr").exists())
+    for words, message in (
+            (["sheet", f"A={path}", "-o", c.path("no.png"), "--resize", "50%"], "only `apply` and `compare` resize, before the operator"),
+            (["compare", path, "hable", "-o", c.path("no.png"), "--resize", "5x"], f"compare: --resize is 5x; {expected}"),
+            (["compare", path, "hable", "-o", c.path("no.png"), "--resize", "9x9", "--max-pixels", "400", "--split", "0.5"],
+             "compare: --split is given with 1 operators"),
+            (["compare", path, "hable", "-o", c.path("no.png"), "--resize", "99x99", "--max-pixels", "400"],
+             "compare: --resize is 99x99; expected at most 400 pixels (--max-pixels)")):
+        done = subprocess.run([c.command, *words], capture_output=True, text=True, check=False)
+        c.report.check(f"refused: {words[0]} {' '.join(map(str, words[-4:]))}", done.returncode == 2 and message in done.stderr
+                       and len(done.stderr.splitlines()) == 1, done.stderr)
+
+
+def check_luts(c):
+    """`apply --lut`: light is resized before the LUT's encoding."""
+    run(c.command, "bake", "hable", "--input-encoding", "log2", "--size", "4096", "-o", c.path("hable.cube"), "-q")
+    path = write(c.path("scene.exr"), scene(40, 60))
+    small = c.oiiotool(path, "30x20")
+    with_lut = ["--lut", c.path("hable.cube"), "-d", "float", "-q"]
+    run(c.command, "apply", small, c.path("wanted.exr"), *with_lut)
+    c.same("a LUT gets the resized picture", c.apply(path, "30x20", *with_lut), c.path("wanted.exr"))
+    lines = np.zeros((32, 32, 3), np.float32)
+    lines[:, ::2] = 1
+    coded = write(c.path("lines.png"), lines, kind="uint8")
+    run(c.command, "apply", c.oiiotool(write(c.path("lines.exr"), lines), "25%"), c.path("wanted.exr"), *with_lut)
+    c.same("codes are decoded before", c.apply(coded, "25%", *with_lut), c.path("wanted.exr"), 1e-5)
+    spaces = ["--input", "ARRI LogC4", *with_lut]  # which OpenColorIO decodes
+    path = write(c.path("dark.exr"), scene(40, 60, most=0.4))  # LogC4 of light below 1
+    run(c.command, "apply", path, c.path("wanted.exr"), *spaces)
+    c.same("a space of the config is decoded once", c.apply(path, "100%", *spaces), c.path("wanted.exr"), 1e-4)
+    done = subprocess.run([c.command, "apply", path, c.path("no.exr"), "--resize", "50%", *with_lut, "--input-encoding", "none"],
+                          capture_output=True, text=True, check=False)
+    c.report.check("colors that pass unchanged are not resized", done.returncode == 2 and not c.path("no.exr").exists() and
+                   done.stderr.strip().endswith("expected --input-encoding with it: without it, colors are passed unchanged"), done.stderr)
+
+
+def check_comparisons(c):
+    """The pixels of `compare` are those of `apply`."""
+    for path, options in ((write(c.path("scene.exr"), scene(80, 120, most=30.0)), []),
+                          (write(c.path("code.exr"), scene(80, 120)), ["--input", "logc3"]),
+                          (write(c.path("code.exr"), scene(80, 120)), ["--input", "ARRI LogC4", "--exposure", "-2"])):
+        said = " ".join(options)
+        for op in ("hable", "reinhard_extended"):
+            run(c.command, "apply", path, c.path(f"{op}.png"), "--resize", "60x40", "--operator", op, *options, "-q")
+        hable, extended = (read(c.path(f"{op}.png"))[0] for op in ("hable", "reinhard_extended"))
+        common = [path, "hable", "reinhard_extended", "--resize", "60x40", *options, "-q"]
+        run(c.command, "compare", *common, "--split", "0.5", "--no-labels", "-o", c.path("split.png"))
+        split = read(c.path("split.png"))[0]
+        c.report.compare(f"compare --split {said}", split, np.concatenate([hable[:, :30], extended[:, 30:]], axis=1), 0.51 / 255)
+        run(c.command, "compare", *common, "-o", c.path("sheet.png"), "--pictures", c.path("all"))
+        c.report.compare(f"compare --pictures {said}", read(c.path("all") / "hable.png")[0], hable, 0.51 / 255)
+        c.report.check(f"compare --pictures {said}: a measured operator", np.abs(
+            read(c.path("all") / "reinhard_extended.png")[0] - extended).max() < 0.51 / 255)
+    path = write(c.path("scene.exr"), scene(80, 120))
+    run(c.command, "apply", path, c.path("legend.png"), "--false-color", "--legend", "--resize", "240", "-q")
+    run(c.command, "apply", path, c.path("plain.png"), "--false-color", "--resize", "240", "-q")
+    shown, plain = read(c.path("legend.png"))[0], read(c.path("plain.png"))[0]
+    left = (shown.shape[1] - 240) // 2
+    c.report.check("--legend: the picture is resized, the legend is not", shown.shape[0] > 160 and any(
+        np.array_equal(shown[y:y + 160, left:left + 240], plain) for y in range(shown.shape[0] - 159)), f"{shown.shape}")
+
+
+def check_provenance(c):
+    """The file says its size, and the next run does not repeat it."""
+    path = write(c.path("scene.exr"), scene(40, 60))
+    run(c.command, "apply", path, c.path("small.exr"), "--resize", "50%", "--operator", "hable", "--mix", "0.5", "-q")
+    spec = header(c.path("small.exr"))
+    c.report.check("Software has the size", ": hable, exposure 0, mix 0.5, resize 50%, display srgb" in spec.getattribute("Software"),
+                   spec.getattribute("Software"))
+    c.report.check("so has a tag of its own", spec.getattribute("tonewright:resize") == "50%")
+    run(c.command, "apply", path, c.path("none.exr"), "--resize", "50%", "--operator", "hable", "-q", "--no-metadata")
+    c.report.check("--no-metadata: no size", header(c.path("none.exr")).getattribute("tonewright:resize") is None)
+    run(c.command, "apply", c.path("small.exr"), c.path("again.exr"), "--operator", "clamp", "-q")
+    spec = header(c.path("again.exr"))
+    c.report.check("a later run at full size has none", spec.getattribute("tonewright:resize") is None
+                   and "resize" not in spec.getattribute("Software"), spec.getattribute("Software"))
+    run(c.command, "apply", path, c.path("small.tif"), "--resize", "30x20", "--operator", "reinhard_local", "-q")
+    spec = header(c.path("small.tif"))
+    c.report.check("also of local operators, in other formats", "resize 30x20" in spec.getattribute("Software"))
 
 
 def check_python(c, folder):
@@ -354,6 +431,26 @@ def check_python(c, folder):
         said = ""
     except ValueError as error:
         said = str(error)
+    light = scene(40, 60, most=30.0)
+    path = write(c.path("scene.exr"), light)
+    run(c.command, "apply", path, c.path("one.exr"), "--resize", "30x20", "-q", "-d", "float", "--operator", "reinhard_extended")
+    wanted = read(c.path("one.exr"))[0]
+    for name, image, options in (("array", light, {}), ("array, channels first", np.moveaxis(light, -1, 0), {"axis": 0}),
+                                 ("ImageBuf", oiio.ImageBuf(str(path)), {})):
+        shown = tonewright.tonemap(image, "reinhard_extended", resize="30x20", **options)
+        if name == "ImageBuf":
+            shown = shown.get_pixels(oiio.FLOAT)
+        c.report.compare(f"Python: tonemap of an {name}", np.moveaxis(shown, 0, -1) if options else shown, wanted, NEAR)
+    flat = tonewright.tonemap(light[..., 0], "hable", resize=30)
+    c.report.check("Python: tonemap of a gray array", flat.shape == (20, 30), f"is {flat.shape}")
+    for options, message in (({"resize": "9999999x9999"}, "pixels; expected at most 1000000000 in all"),
+                             ({"resize": "50%", "roi": oiio.ROI(0, 9, 0, 9)}, "roi is given with resize; expected one of them")):
+        try:
+            tonewright.tonemap(oiio.ImageBuf(str(path)), "hable", **options)
+            raised = ""
+        except ValueError as error:
+            raised = str(error)
+        c.report.check(f"Python: tonemap refuses {options}", message in raised, raised)
     c.report.check("Python: refused", said == "resize is 0; expected WxH, W or P%, such as 1920x1080, 1920 or 50%", said)
 
 
@@ -364,7 +461,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         c = Check(report, command, Path(scratch))
         for check in (check_sizes, check_operators, check_windows, check_alpha, check_light, check_lamps, check_other_channels,
-                      check_shape, check_many, check_refusals):
+                      check_shape, check_many, check_luts, check_comparisons, check_provenance, check_refusals):
             check(c)
         if len(sys.argv) > 2:
             check_python(c, sys.argv[2])

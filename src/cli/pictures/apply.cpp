@@ -96,24 +96,6 @@ MeterOptions meter_options_of(const ApplyOptions& options) {
     return result;
 }
 
-/// @throws Error  a size that no picture can have
-void check_resize(const ApplyOptions& options) {
-    if (!options.given.contains("--resize")) return;
-    ResizeSize size;
-    try {
-        size = parse_resize(options.resize);
-    } catch (const Error& e) {
-        throw Error(std::string("apply: --") + e.what());
-    }
-    const double most = options.picture.max_pixels.value_or(kMaxPixels);
-    if (static_cast<double>(size.width) * std::max(size.height, 1) > most) {
-        throw Error(
-            fmt::format("apply: --resize is {}; expected at most {:.0f} pixels "
-                        "(--max-pixels)",
-                        options.resize, most));
-    }
-}
-
 /// A frame that took too long to meter is not tone mapped: if it were faster the second time, it
 /// would have another frame's exposure.
 void take_error(const MeteredShot& shot, FrameFiles& frame) {
@@ -196,6 +178,16 @@ std::vector<MeteredPicture> meter_each(std::vector<FrameFiles>& files,
     return metered;
 }
 
+/// @param light  exposure, input, units and alpha of the picture
+OIIO::ImageBuf resized(const OIIO::ImageBuf& source, const ApplyOptions& options,
+                       const std::string& path, const TonemapOptions& light) {
+    return about_picture(path, [&] {
+        return resized_picture(source, options.resize, light,
+                               options.picture.max_pixels.value_or(kMaxPixels),
+                               options.picture.threads);
+    });
+}
+
 /// @param stated  the input that the LUT states; the first picture finds it, and says so
 void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles& file,
                std::optional<LutOptions>& stated) {
@@ -213,11 +205,22 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
         (void)channel_layout(source.spec());
         return source_color(source.spec(), options.input);
     });
-    if (color.convert) {
+    std::string name = color.name;
+    if (!options.resize.empty()) {
+        TonemapOptions light;
+        light.input = options.input;
+        light.exposure_stops = options.exposure;
+        light.reference_white = options.reference_white;
+        light.input_units = parse_input_units(options.input_units);
+        light.unpremult = alpha_of(options);
+        source = resized(source, options, file.in, light);
+        color = source_color(source.spec(), options.input);
+    } else if (color.convert) {
         source = converted_picture(source, color);
         color = source_color(source.spec(), kAutoInput);
+        name = color.name;
     }
-    if (!stated) stated = with_stated_input(options.lut, color.name);
+    if (!stated) stated = with_stated_input(options.lut, name);
     const Pipeline before = before_lut("apply", *stated, options, color);
     auto quiet = std::make_optional<QuietStderr>();
     const SimdEngine encode(before);
@@ -237,8 +240,9 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
         tag_as_shown_on(*display, result.specmod());
     if (write.says_how) {
         const std::string lut_name = std::filesystem::path(options.lut.file).filename().string();
+        const std::string size = options.resize.empty() ? "" : ", resize " + options.resize;
         result.specmod().attribute(
-            "Software", fmt::format("Tonewright {}: LUT {}", TONEWRIGHT_VERSION, lut_name));
+            "Software", fmt::format("Tonewright {}: LUT {}{}", TONEWRIGHT_VERSION, lut_name, size));
     }
     write_image_atomically(result, file.out, write);
     quiet.reset();
@@ -299,7 +303,8 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Ap
 void write_with_legend(const Tonemapper& tonemapper, const FrameFiles& file,
                        const ApplyOptions& options, const WriteOptions& write) {
     OIIO::ImageBuf picture;
-    const OIIO::ImageBuf source = read_picture(file.in, options.picture, options.input);
+    OIIO::ImageBuf source = read_picture(file.in, options.picture, options.input);
+    if (!options.resize.empty()) source = resized(source, options, file.in, tonemapper.options());
     if (!tonemapper(picture, source, {}, options.picture.threads))
         throw FileError(file.in + ": " + first_line(picture.geterror()));
     write_image_atomically(with_legend(with_associated_alpha(picture)), file.out, write);
@@ -311,7 +316,7 @@ namespace {
 
 int run_on_files(ApplyOptions options) {
     use_threads(options.picture);
-    check_resize(options);
+    if (options.given.contains("--resize")) check_resize("apply", options.resize, options.picture);
     if (options.given.contains("--operator") && trimmed(options.op).empty())
         throw Error("apply: --operator has no value; expected --operator NAME");
     ApplyFiles files = files_of(options);

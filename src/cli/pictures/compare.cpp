@@ -16,6 +16,7 @@
 #include "image/comparison.h"
 #include "image/contact_sheet.h"
 #include "image/picture_file.h"
+#include "image/resize.h"
 #include "image/source_picture.h"
 #include "ocio/model.h"
 #include "tonewright/contact_sheet.h"
@@ -215,6 +216,7 @@ void write_split(const CompareOptions& options, const std::vector<Rendering>& re
 }
 
 void compare_pictures(CompareOptions options) {
+    if (options.is_resized) check_resize("compare", options.resize, options.picture);
     std::vector<Rendering> renderings = renderings_of(options);
     if (options.split || options.difference) {
         if (options.operators.size() != 2 || options.has_false_color) {
@@ -234,7 +236,17 @@ void compare_pictures(CompareOptions options) {
     });
     const std::string remark =
         fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure), title_of(source));
-    if (source.convert || (!options.split && !source.decode.empty())) {
+    if (options.is_resized) {
+        TonemapOptions light;
+        light.input = options.input;
+        light.exposure_stops = options.exposure;
+        light.reference_white = options.reference_white;
+        light.input_units = parse_input_units(options.input_units);
+        picture = with_memory_for(options.in, [&] {
+            return resized_picture(picture, options.resize, light,
+                                   options.picture.max_pixels.value_or(kMaxPixels));
+        });
+    } else if (source.convert || (!options.split && !source.decode.empty())) {
         // Code values are not light, so they are not scaled.
         picture = to_rec709_light(picture, source, options.reference_white, options.in);
         options.input = "lin_rec709";

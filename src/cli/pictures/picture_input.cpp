@@ -15,6 +15,7 @@
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
 #include "image/picture_file.h"
+#include "image/resize.h"
 #include "image/tonemap_file.h"
 #include "pipeline/exposure.h"
 #include "tonewright/engine.h"
@@ -108,6 +109,20 @@ ReadOptions read_options_of(const PictureChoice& choice) {
     options.layer = choice.layer;
     options.max_pixels = choice.max_pixels.value_or(kMaxPixels);
     return options;
+}
+
+void check_resize(const char* command, const std::string& resize, const PictureChoice& choice) {
+    ResizeSize size;
+    try {
+        size = parse_resize(resize);
+    } catch (const Error& e) {
+        throw Error(fmt::format("{}: --{}", command, e.what()));
+    }
+    const double most = choice.max_pixels.value_or(kMaxPixels);
+    if (static_cast<double>(size.width) * std::max(size.height, 1) > most) {
+        throw Error(fmt::format("{}: --resize is {}; expected at most {:.0f} pixels (--max-pixels)",
+                                command, resize, most));
+    }
 }
 
 bool FinishedPictures::take(const std::string& text) {

@@ -83,6 +83,9 @@ void use_threads(const PictureInput& input);
 /// The options of the library, without callbacks.
 [[nodiscard]] ReadOptions read_options_of(const PictureChoice& choice);
 
+/// @throws Error  --resize is a size that no picture can have
+void check_resize(const char* command, const std::string& resize, const PictureChoice& choice);
+
 /// Warns of pictures that are tone mapped a second time (kFinishedPicture): one line for all with
 /// the same reason. Not with --quiet, unless --strict was given.
 class FinishedPictures {

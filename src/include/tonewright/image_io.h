@@ -101,7 +101,7 @@ struct WriteOptions {
     double max_pixels = 1e8;
     /// tonemap_file() records the provenance: `Software` has version, operator, parameters,
     /// exposure and display. OpenEXR and PNG files also get the attributes `tonewright:operator`,
-    /// `tonewright:exposure` and `tonewright:display`.
+    /// `tonewright:exposure`, `tonewright:resize` and `tonewright:display`.
     bool says_how = false;
     /// Receives warnings about the file, in one line without its name, before the file gets its
     /// final name. An exception stops the writing.

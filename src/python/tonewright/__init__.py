@@ -85,7 +85,8 @@ def _options(settings: Mapping[str, Any] | None, exposure: float, input: str, di
 def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0, input: str = "auto",
             display: str = "srgb", look: str = "", reference_white: float = 100, input_units: str = "relative",
             mix: float = 1, unpremult: str | bool = "auto", statistics: str = "picture", axis: int | None = None,
-            roi: OpenImageIO.ROI | None = None, nthreads: int = 0, progress: Callable[[float], object] | None = None) -> Picture:
+            roi: OpenImageIO.ROI | None = None, nthreads: int = 0, progress: Callable[[float], object] | None = None,
+            resize: int | str = "") -> Picture:
     """Tone map a picture and return the result as float32 values of the same kind.
 
     image: an OpenImageIO.ImageBuf, or an array of shape (height, width) or (height, width, channels) of float16, float32,
@@ -100,6 +101,7 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
     roi: part of an ImageBuf.
     nthreads: number of threads; 0 uses all cores.
     progress: called with the finished fraction, from 0 to 1; a true result cancels.
+    resize: size of the result, in linear light before the operator: "1920x1080", 1920 (the width) or "50%".
 
     Example: tonewright.tonemap(OpenImageIO.ImageBuf("shot.exr"), "agx_blender", exposure=1)
     """
@@ -111,7 +113,7 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
             raise ValueError("axis is given; expected an array of three dimensions")
         image = _np.moveaxis(image, axis, -1)
     result = _tonewright.tonemap(image, _text("op", op), roi=roi, nthreads=_operator.index(nthreads), progress=progress,
-                                 **options)
+                                 resize=str(resize), **options)
     return result if axis is None else _np.moveaxis(result, -1, axis)
 
 

@@ -1118,7 +1118,8 @@ CubeText read_look(const std::string& path, std::string_view xml) {
     result.cube.size = text.size("size", without_quotes_and_blanks(element_of(text, lut, "size")),
                                  2, kLargestCube);
     const std::string digits = without_quotes_and_blanks(element_of(text, lut, "data"));
-    const std::size_t expected = 3 * 8 * cubed(result.cube.size);
+    constexpr std::size_t kDigitsOfColor = 24;
+    const std::size_t expected = kDigitsOfColor * cubed(result.cube.size);
     if (digits.size() != expected)
         text.fail(fmt::format("data has {} digits; expected {}", digits.size(), expected));
     for (std::size_t at = 0; at < digits.size(); at += 8) {

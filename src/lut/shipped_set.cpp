@@ -276,7 +276,7 @@ const std::vector<LutPresetSet>& lut_preset_sets() {
          .operators = {"agx_blender", "agx_sobotka", "aces_13", "aces_20", "aces_narkowicz", "gt7",
                        "hable", "khronos_neutral", "reinhard_extended"},
          .sizes = {{"agx_sobotka", 33}},
-         .approximate = {"aces_13", "gt7"},
+         .approximate = {"aces_13", "gt7", "khronos_neutral"},
          .nearer = "a [DCTL](../docs/shaders.md) (`tonewright shader gt7 --for resolve -o "
                    "gt7.dctl`); for footage within Rec.709, `--input lin_rec709`"},
         {.host = &find_lut_application("resolve"),
@@ -314,11 +314,12 @@ const std::vector<LutPresetSet>& lut_preset_sets() {
                    "(`tonewright shader gt7 --for unity -o gt7.shader`)"},
         {.host = &find_lut_application("unreal"),
          .operators = kOperators,
-         .approximate = {"aces_13", "aces_hill", "khronos_neutral"},
+         .approximate = {"khronos_neutral"},
          .nearer = "a [shader](../docs/shaders.md) (`tonewright shader gt7 --for unreal -o "
                    "gt7.ush`)"},
         {.host = &find_lut_application("godot"),
          .operators = kOperators,
+         .approximate = {"khronos_neutral"},
          .nearer = "a [shader](../docs/shaders.md) (`tonewright shader gt7 --for godot -o "
                    "gt7.glsl`)"},
         {.host = &find_lut_application("photoshop"),

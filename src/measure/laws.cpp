@@ -230,7 +230,8 @@ Differences measured(const Subject& subject) {
         tint = std::max(tint, hi - lo);
     }
     if (largest > 1 + kNoise) {
-        found[Kind::exceeds_white] = largest > 1.2 * largest_two_stops_down ? kInfinity : largest;
+        if (largest > 1.2 * largest_two_stops_down) largest = kInfinity;
+        found[Kind::exceeds_white] = largest;
     }
     if (tint > kHalfCode) found[Kind::tints_gray] = tint;
     const std::size_t last = ramp.size() - 1;

@@ -66,7 +66,7 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     const Expr u =
         named("u", is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
                                : gray_in_toe / (1 - gray_in_toe) * pow(x / kMidGray, toe_power));
-    const Expr toe_part = named("toe_part", arm(ts, u) - black_clip);
+    Expr toe_part = named("toe_part", arm(ts, u) - black_clip);
     if (std::min(tm, sm) >= top) return toe_part;
 
     const double x_shoulder = std::pow(10, std::min(sm, top));

@@ -120,7 +120,7 @@ std::string as_variable(const std::string& name) {
         result.pop_back();
     const bool is_taken = reserved.contains(result) || is_formula_function(result);
     for (const char* prefix : {"gl_", "tw_"}) {
-        if (result.compare(0, 3, prefix) == 0) result = "own_" + result;
+        if (result.compare(0, 3, prefix) == 0) result.insert(0, "own_");
     }
     return result.empty() || is_taken ? result + "_value" : result;
 }

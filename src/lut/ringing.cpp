@@ -241,7 +241,11 @@ void RayFit::fit(Lut& lut, const RayBounds& bounds) const {
     // If both bounds cannot be met, the last rounds fix the falls, because they are visible as
     // rings.
     constexpr int kFallsOnly = 40;
-    const auto& [rays, code, weights, mobility] = *prepared_;
+    // Clang 14 captures no structured bindings.
+    const Rays& rays = prepared_->rays;
+    const DisplayCode& code = prepared_->code;
+    const std::vector<NodeWeights>& weights = prepared_->weights;
+    const std::vector<double>& mobility = prepared_->mobility;
     const auto [lowest, highest] = std::minmax_element(lut.values.begin(), lut.values.end());
     const float lo = *lowest;
     const float hi = *highest;

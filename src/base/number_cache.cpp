@@ -61,7 +61,8 @@ std::optional<std::vector<double>> read(const fs::path& path, const std::string&
         bytes.size() % sizeof(double) != 0)
         return std::nullopt;
     std::vector<double> numbers(count);
-    std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    // data() of no numbers may be null, which memcpy must not get: Clang then compiles a crash.
+    if (!bytes.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
     return numbers;
 }
 

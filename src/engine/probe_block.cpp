@@ -23,8 +23,14 @@ constexpr double kNearKink = 1e-5;
 // time are written in vectors.
 
 /// What every processor has. `auto&` would take them for aligned to their size, which rows are not.
+/// Clang 14 does not align variables of such types where its instructions need it, so it gets
+/// vectors of one double: the same bits, slower.
 struct Vectors {
+#if defined(__clang__)
+    using Vector [[gnu::vector_size(8), gnu::may_alias]] = double;
+#else
     using Vector [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
+#endif
 };
 struct Avx2Vectors {
     using Vector [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
@@ -292,7 +298,7 @@ struct Functions {
     Row (*largest)(const std::vector<Row>& rows);
 };
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 // The same bits: AVX2 has no fused multiply-add.
 [[gnu::target("avx2")]] void run_on_avx2(const BackwardPass& pass) { run_with<Avx2Vectors>(pass); }
 [[gnu::target("avx2")]] void add_squares_on_avx2(const OutputRows& adjoint, const Row& error,
@@ -310,7 +316,7 @@ struct Functions {
 
 const Functions& functions() {
     static const Functions best = [] {
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
         if (__builtin_cpu_supports("avx2"))
             return Functions{run_on_avx2, add_squares_on_avx2, add_roundings_on_avx2,
                              largest_on_avx2};

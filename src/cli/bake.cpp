@@ -193,16 +193,12 @@ void bake_one(Options& options) {
     }
     const BakedLut baked = [&] {
         const ElapsedLine line("bake");
-        return bake_lut(request, nodes, trilinear, options.max_error);
+        constexpr int kLargest = 129;
+        const bool is_for_host = host && request.format == host->format;
+        return bake_lut(request, nodes, trilinear, options.max_error,
+                        is_for_host ? host->largest_size : kLargest);
     }();
     const Lut& lut = baked.lut;
-    if (options.max_error && host && request.format == host->format && lut.dimension == 3 &&
-        lut.size > host->largest_size) {
-        throw Error(fmt::format(
-            "bake: max error is {}; expected one that {} grid points a side have, because {} reads "
-            "no more ({} have it)",
-            shortest(*options.max_error), host->largest_size, host->id, lut.size));
-    }
     // The application's own input: nothing of it can be changed.
     const LutApplication* own_host = host && has_usual_input(*host, request) ? host : nullptr;
     const LutError& error = baked.error;

@@ -68,7 +68,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          "tetrahedral",
          "Lumetri Color > Basic Correction > Input LUT > Browse, on a clip in ARRI LogC3",
          ""},
-        // Apple's user guide, "Apply LUTs in Final Cut Pro"; it does not name the interpolation.
+        // Apple's user guide, "Apply LUTs in Final Cut Pro". It names neither the interpolation nor
+        // the sizes: the worse interpolation, and the size that every editor reads.
         {"fcp",
          "Final Cut Pro",
          LutFormat::cube,
@@ -81,7 +82,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "",
          false,
          "",
-         65},
+         33},
         {"photoshop",
          "Photoshop",
          LutFormat::cube,

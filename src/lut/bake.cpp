@@ -120,7 +120,7 @@ std::vector<int> sizes_of(LutFormat format) {
 }  // namespace
 
 BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
-                  std::optional<double> max_error) {
+                  std::optional<double> max_error, int largest_size) {
     if (!max_error) return complete(bake_size(request, nodes, trilinear), request, trilinear);
     if (request.size) {
         throw Error("bake: size is " + std::to_string(*request.size) +
@@ -134,6 +134,7 @@ BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
     if (baked.lut.dimension == 3) {
         LutRequest sized = request;
         for (const int size : sizes_of(request.format)) {
+            if (size > largest_size) break;
             sized.size = size;
             baked = bake_size(sized, nodes, trilinear);
             if (baked.error.photographs.p999 <= *max_error)

@@ -43,7 +43,7 @@ constexpr int kRounds = 3;
 /// With bounds: more rounds change 99.9 % of photographs by less than 2 %.
 constexpr int kBoundRounds = 2;
 /// Share of the diagonal that a step from nodes within bounds adds (Levenberg and Marquardt), so
-/// that few bounds break. With 0.3, the second round still gains.
+/// that few bounds break. With 0.3, 99.9 % of photographs get 4 % worse (AgX, LogC3).
 constexpr float kDamping = 1;
 constexpr int kSteps = 30;
 constexpr double kConverged = 1e-8;

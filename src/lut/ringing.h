@@ -14,7 +14,7 @@ inline constexpr double kFittedRayError = 0.7 * kLargestRayError;
 
 /// Which bounds a 3D LUT gets.
 struct RayBounds {
-    /// Falls along the dense rays: less than what rings(), because other colors lie between them.
+    /// Falls along the rays: less than kLargestFall, because other colors lie between the rays.
     double largest_fall = 0.85 * kLargestFall;
     /// Each channel within kFittedRayError of the operator.
     bool has_band = false;

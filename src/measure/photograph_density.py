@@ -14,9 +14,9 @@ per million of a histogram over three axes, a tenth of them spread over neighbor
     hue         of the hexcone, in steps of 15 degrees from red through yellow
 
 The committed numbers come from these pictures: of openexr-images, Beachball/singlepart.0001, Bonita, Cannon, Carrots, Desk,
-GoldenGate, KernerEnvLatLong, MtTamWest, MultiView/Adjuster and StillLife; and of the npm package @pmndrs/assets 1.7.0 (CC0), city,
-lab, night, park, sunset, venice and warehouse. Of 34 pictures, sorted by their share of saturated pixels, they are one of each pair
-of neighbors; tests/parity/clients/test_photographs.py measures on the others.
+GoldenGate, KernerEnvLatLong, MtTamWest, MultiView/Adjuster and StillLife (Bonita and KernerEnvLatLong scaled to 960 pixels); and of
+the npm package @pmndrs/assets 1.7.0 (CC0), city, lab, night, park, sunset, venice and warehouse. Of 34 pictures, sorted by their share
+of saturated pixels, they are one of each pair of neighbors; tests/parity/clients/test_photographs.py measures on the others.
 """
 
 import sys

@@ -611,7 +611,7 @@ def check_bake_for(report, command, scratch):
                      and err.count("\n") == 1 and f"size is {size}; expected at most 65 for {host}" in err, err)
     code, _, err = call(command, ["bake", "agx_blender", "--for", "unity", "--max-error", "0.006", "--nodes", "sampled", "-o", path])
     report.check("bake --max-error: no size above that of the application", code == USAGE and not path.exists() and err.count("\n") == 1
-                 and "expected one that 65 grid points a side have, because unity reads no more" in err, err)
+                 and "which cube 65 has on photographs" in err, err)
     code, _, err = call(command, ["bake", "hable", "--for", "resolve", "--size", 8192, "-o", path])
     report.check("bake --for resolve: a table of one curve has entries, no grid points",
                  code == OK and "1D, 8192 entries" in err and "with Rec.709 as output color space" in err, err)

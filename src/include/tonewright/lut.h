@@ -220,11 +220,13 @@ struct BakedLut {
 /// @param trilinear  the interpolation of its reader: trilinear instead of tetrahedral
 /// @param max_error  instead of a size: the smallest of 17, 25, 33, 49, 65, 97 and 129 points a
 ///                   side (those that the format allows) with at most this PhotographError::p999
+/// @param largest_size  of those sizes
 /// @throws Error  as sample_lut(); both a size and a max_error; no size meets max_error
 [[nodiscard]] TONEWRIGHT_API BakedLut bake_lut(const LutRequest& request,
                                                LutNodes nodes = LutNodes::automatic,
                                                bool trilinear = false,
-                                               std::optional<double> max_error = std::nullopt);
+                                               std::optional<double> max_error = std::nullopt,
+                                               int largest_size = 129);
 
 /// Rounds the values as the format requires: to integers of LutRequest::bits, or to
 /// LutRequest::decimals.

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Dependencies between the folders of src/ run one way; this reads the #include lines.
+"""Dependencies between the folders of src/ run one way; this reads the #include lines. No text below the front ends has an
+option of the command: errors and warnings there refer to parameters, `<<size=65>>` (error.h).
 
 Usage: layers.py SRC
 """
@@ -55,20 +56,49 @@ THIRD_PARTY = {
     "pybind11": ["python"],
     "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "cli", "cli/pictures", "plugin", "python"],
 }
+# They have names of their own for the parameters of a request.
+FRONT_ENDS = {"cli", "cli/pictures", "python", "plugin", "definition"}
+# Their options may have the same names as ours.
+OTHER_PROGRAMS = re.compile(r"oiiotool|mpv|glslangValidator|iscolorspace")
+# Text of the files that the command writes, for its users.
+GENERATED = {("ocio/operator_facts.cpp", "operator"), ("ocio/added_record.cpp", "into"),
+             ("ocio/added_record.cpp", "update"), ("ocio/added_record.cpp", "remove")}
+LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
 
 
 def folder_of(parts):
     return "/".join(parts[:2]) if "/".join(parts[:2]) in BELOW else parts[0]
 
 
+def own_options(src):
+    """The names of the options that the command declares, without --."""
+    text = "".join(path.read_text() for path in (src / "cli").glob("*.cpp"))
+    declared = re.findall(r'"(?:-\w,)?((?:--[a-z0-9-]+,?)+)"', text)
+    return {name for names in declared for name in re.findall(r"--([a-z0-9-]+)", names)}
+
+
+def options_in(line, options):
+    if OTHER_PROGRAMS.search(line):
+        return []
+    words = [word for literal in LITERAL.findall(line) for word in re.findall(r"--([a-z0-9][a-z0-9-]*)", literal)]
+    return [word for word in words if word in options]
+
+
 def main(src: pathlib.Path) -> int:
     failures, count = [], 0
+    options = own_options(src)
+    if len(options) < 100:
+        failures.append(f"only {len(options)} options are found in cli/")
     for path in sorted(src.rglob("*")):
         if path.suffix not in (".cpp", ".h"):
             continue
         parts = path.relative_to(src).parts
         folder = PUBLIC[path.stem] if parts[0] == "include" else folder_of(parts)
         for number, line in enumerate(path.read_text().splitlines(), 1):
+            if folder not in FRONT_ENDS:
+                file = path.relative_to(src).as_posix()
+                failures += [f"{file}:{number}: a text has the option --{option}; expected <<PARAMETER=VALUE>>"
+                             for option in options_in(line, options) if (file, option) not in GENERATED]
             match = re.match(r'\s*#\s*include\s*([<"])([^>"]+)[>"]', line)
             if not match:
                 continue

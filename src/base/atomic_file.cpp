@@ -31,6 +31,12 @@ namespace fs = std::filesystem;
 
 std::string reason_of(int error_number) { return std::generic_category().message(error_number); }
 
+Problem problem_of_system(int error_number) {
+    return {.kind = Problem::Kind::file,
+            .value = reason_of(error_number),
+            .error_number = error_number};
+}
+
 namespace {
 
 /// The final target, after symbolic links.
@@ -258,12 +264,11 @@ int AtomicFile::keep() {
 namespace {
 void write_whole(const std::string& path, std::string_view contents,
                  AtomicFile::Kind kind = AtomicFile::Kind::of_user) {
-    const auto refuse = [&](const std::string& reason) {
-        throw FileError("write: " + path + ": " + reason);
+    const auto fail = [&](int error) {
+        throw FileError(within("write: " + path, problem_of_system(error)));
     };
-    const auto fail = [&](int error) { refuse(reason_of(error)); };
     AtomicFile target(path, kind);
-    if (!target.refusal().empty()) refuse(target.refusal());
+    if (!target.refusal().empty()) throw FileError("write: " + path + ": " + target.refusal());
     if (const int error = target.check_target()) fail(error);
     int error = target.write(contents);
     if (error == 0) error = target.keep();
@@ -277,7 +282,8 @@ void make_folder(const fs::path& folder) {
          path = path.parent_path())
         missing.push_back(path.string());
     fs::create_directories(folder, error);
-    if (error) throw FileError("write: " + folder.string() + ": " + error.message());
+    if (error)
+        throw FileError(within("write: " + folder.string(), problem_of_system(error.value())));
     for (const std::string& path : missing)
         (void)register_unfinished(path);
 }
@@ -337,10 +343,10 @@ class Folders {
 
 }  // namespace
 
-void require_separate_files(std::string_view what, const std::vector<std::string>& paths) {
+void require_separate_files(const std::vector<std::string>& paths) {
     const auto refuse = [&](const std::string& a, const std::string& b) {
-        throw Error(fmt::format("{}: outputs {} and {} are one file; expected different files",
-                                what, a, b));
+        throw Error(Problem{.value = fmt::format("outputs {} and {} are one file", a, b),
+                            .expected = "different files"});
     };
     std::map<std::pair<std::uint64_t, std::uint64_t>, const std::string*> old_files;
     std::vector<NewFile> new_files;
@@ -373,14 +379,14 @@ void require_separate_files(std::string_view what, const std::vector<std::string
 }
 
 void require_writable_file(const std::string& path) {
-    const auto refuse = [&](const std::string& reason) {
-        throw FileError("write: " + path + ": " + reason);
+    const auto fail = [&](int error) {
+        throw FileError(within("write: " + path, problem_of_system(error)));
     };
     AtomicFile probe(path);  // which is never kept
-    if (!probe.refusal().empty()) refuse(probe.refusal());
-    if (const int error = probe.check_target()) refuse(reason_of(error));
+    if (!probe.refusal().empty()) throw FileError("write: " + path + ": " + probe.refusal());
+    if (const int error = probe.check_target()) fail(error);
     const int file = probe.create();
-    if (file < 0) refuse(reason_of(errno));
+    if (file < 0) fail(errno);
     ::close(file);
 }
 
@@ -391,7 +397,7 @@ void require_writable_folder(const std::string& folder) {
     remove_leftovers({name});
     AtomicFile probe(name);  // which is never kept
     const int file = probe.create();
-    if (file < 0) throw FileError("write: " + folder + ": " + reason_of(errno));
+    if (file < 0) throw FileError(within("write: " + folder, problem_of_system(errno)));
     ::close(file);
 }
 
@@ -418,7 +424,7 @@ void write_generated_files(const std::string& folder, const std::vector<Generate
     paths.reserve(files.size());
     for (const GeneratedFile& file : files)
         paths.push_back((root / file.path).string());
-    require_separate_files("write", paths);
+    require_separate_files(paths);
     remove_leftovers(paths);
     for (const GeneratedFile& file : files) {
         if (file.path != last) write(file);

@@ -7,12 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "tonewright/error.h"
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The message of an errno.
 [[nodiscard]] TONEWRIGHT_API std::string reason_of(int error_number);
+/// The system's error as the problem of a file, which within() adds.
+[[nodiscard]] TONEWRIGHT_API Problem problem_of_system(int error_number);
 
 /// A file that is written under a temporary name beside its target and gets the target's name when
 /// it is complete. A failed or killed run leaves the old file whole.
@@ -92,10 +95,8 @@ TONEWRIGHT_API void write_text_atomically(const std::string& path, std::string_v
 /// Two of these outputs would be one file: through links, hard links too, or because the disk does
 /// not tell capital letters (ASCII) from small ones. The second would replace the first. Equal
 /// names are one output.
-/// @param what    "apply"
-/// @throws Error  "<what>: outputs <path> and <path> are one file; expected different files"
-TONEWRIGHT_API void require_separate_files(std::string_view what,
-                                           const std::vector<std::string>& paths);
+/// @throws Error  "outputs <path> and <path> are one file; expected different files"
+TONEWRIGHT_API void require_separate_files(const std::vector<std::string>& paths);
 
 /// Throws what write_text_atomically() will throw, before a long computation.
 TONEWRIGHT_API void require_writable_file(const std::string& path);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 
@@ -178,22 +179,33 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     return likely.empty() ? "" : likely.front();
 }
 
+std::string suggested_names(std::string_view name, const std::vector<std::string>& candidates) {
+    return suggested_names(name, without_other_names(candidates));
+}
+
+std::string suggested_names(std::string_view name, const std::vector<NamedChoice>& choices) {
+    return join_choices(likely_names(name, choices));
+}
+
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
     return did_you_mean(name, without_other_names(candidates));
 }
 
 std::string did_you_mean(std::string_view name, const std::vector<NamedChoice>& choices) {
-    const std::vector<std::string> likely = likely_names(name, choices);
-    return likely.empty() ? "" : "; did you mean " + join_choices(likely) + "?";
+    const std::string names = suggested_names(name, choices);
+    return names.empty() ? "" : "; did you mean " + names + "?";
 }
 
-std::size_t find_choice(std::string_view what, std::string_view text,
-                        const std::vector<std::string>& choices) {
+std::size_t find_choice(std::string_view parameter, std::string_view text,
+                        const std::vector<std::string>& choices, std::string_view what) {
     for (std::size_t i = 0; i < choices.size(); ++i) {
         if (is_same_name(choices[i], text)) return i;
     }
-    throw Error(fmt::format("{} is {}; expected {}{}", what, text, join_choices(choices),
-                            did_you_mean(text, choices)));
+    throw Error({.what = std::string(what),
+                 .parameter = std::string(parameter),
+                 .value = std::string(text),
+                 .expected = join_choices(choices),
+                 .suggestion = suggested_names(text, choices)});
 }
 
 std::string join_choices(const std::vector<std::string>& choices) {
@@ -225,10 +237,22 @@ std::string_view trimmed(std::string_view text) {
 namespace {
 
 /// Libraries that run out of memory name the exception or the function that failed.
-bool is_about_memory(std::string_view message) { return message.find("bad_alloc") != message.npos; }
+bool is_about_memory(std::string_view message) {
+    constexpr std::array<std::string_view, 3> kWords = {"bad_alloc", "no memory for",
+                                                        "allocate memory"};
+    return std::any_of(kWords.begin(), kWords.end(),
+                       [&](std::string_view words) { return message.find(words) != message.npos; });
+}
 constexpr const char* kNotEnoughMemory = "not enough memory";
 
 }  // namespace
+
+Problem problem_of_library(std::string_view text) {
+    Problem problem;
+    if (is_about_memory(text)) problem.kind = Problem::Kind::memory;
+    problem.value = first_line(text);
+    return problem;
+}
 
 std::string first_line(std::string_view text) {
     if (is_about_memory(text)) return kNotEnoughMemory;

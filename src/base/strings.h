@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tonewright/error.h"
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -16,6 +17,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] TONEWRIGHT_API std::string extension_of(const std::string& path);
 /// Without the blanks (space, tab, line ends) at both ends.
 [[nodiscard]] TONEWRIGHT_API std::string_view trimmed(std::string_view text);
+/// The problem in a library's message, as first_line() has it. Libraries say in words only that
+/// memory ran out, so this is the one place that looks for such words.
+[[nodiscard]] TONEWRIGHT_API Problem problem_of_library(std::string_view text);
 /// The first line of a library's message; "unknown error" for an empty one. A message about
 /// memory becomes "not enough memory".
 [[nodiscard]] TONEWRIGHT_API std::string first_line(std::string_view text);
@@ -51,6 +55,11 @@ struct NamedChoice {
 /// rec2020 are different things.
 [[nodiscard]] TONEWRIGHT_API std::vector<std::string> likely_names(
     std::string_view name, const std::vector<NamedChoice>& choices);
+/// `a, b or c` of them, or empty.
+[[nodiscard]] TONEWRIGHT_API std::string suggested_names(
+    std::string_view name, const std::vector<std::string>& candidates);
+[[nodiscard]] TONEWRIGHT_API std::string suggested_names(std::string_view name,
+                                                         const std::vector<NamedChoice>& choices);
 /// The first of them, or empty.
 [[nodiscard]] TONEWRIGHT_API std::string nearest_name(std::string_view name,
                                                       const std::vector<std::string>& candidates);
@@ -60,10 +69,12 @@ struct NamedChoice {
 [[nodiscard]] TONEWRIGHT_API std::string did_you_mean(std::string_view name,
                                                       const std::vector<NamedChoice>& choices);
 /// The index of the choice that `text` names, once folded.
-/// @param what   names the choice in the message: "plot: --y"
-/// @throws Error  `<what> is <text>; expected <choices>[; did you mean <nearest>?]`
-[[nodiscard]] TONEWRIGHT_API std::size_t find_choice(std::string_view what, std::string_view text,
-                                                     const std::vector<std::string>& choices);
+/// @param parameter  of `what`; empty: of the request
+/// @throws Error  a Problem of this parameter
+[[nodiscard]] TONEWRIGHT_API std::size_t find_choice(std::string_view parameter,
+                                                     std::string_view text,
+                                                     const std::vector<std::string>& choices,
+                                                     std::string_view what = {});
 /// `a, b or c`.
 [[nodiscard]] TONEWRIGHT_API std::string join_choices(const std::vector<std::string>& choices);
 

@@ -43,13 +43,13 @@ void write_backup(const std::string& path) {
     for (int number = 2; fs::exists(backup); ++number)
         backup = fmt::format("{}.bak{}", path, number);
     remove_leftovers({backup});
-    const std::string text = read_file(path, std::string::npos, [&](const std::string& reason) {
-        throw FileError("read: " + path + ": " + reason);
+    const std::string text = read_file(path, std::string::npos, [&](const Problem& why) {
+        throw FileError(within("read: " + path, why));
     });
     AtomicFile copy(backup, path);
     int error = copy.write(text);
     if (error == 0) error = copy.keep();
-    if (error != 0) throw FileError("write: " + backup + ": " + reason_of(error));
+    if (error != 0) throw FileError(within("write: " + backup, problem_of_system(error)));
     fmt::print("backup: {}\n", backup);
 }
 
@@ -114,7 +114,7 @@ void replace_config(const ExtendedConfig& changed, const Options& options) {
             remove_leftovers({name});
             AtomicFile trial(name, path);  // as private as the config
             if (const int error = trial.write(changed.text))
-                throw FileError("write: " + path + ": " + reason_of(error));
+                throw FileError(within("write: " + path, problem_of_system(error)));
             views = changed.check(trial.path().string());
         }
         if (!is_moved) link_folders(record.parent_path(), changed, written);

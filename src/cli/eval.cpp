@@ -168,7 +168,7 @@ ColorMap map_of_operator(const Options& given) {
     check_has_operator(options);
     enum Engine : std::size_t { kReference, kSimd, kOcio, kOcioGpu };
     const std::size_t kind =
-        find_choice("eval: engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
+        find_choice("engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
     take_lut_options("eval", options.lut, options, true);
     const View view = view_of(options);
     const Pipeline pipeline = pipeline_of(options, view);

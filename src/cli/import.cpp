@@ -68,8 +68,8 @@ ShaderImport import_of(const Options& options) {
         settings.parameters[text.substr(0, equals)] = parameter_of(text, numbers);
     }
     if (!options.encoded.empty()) {
-        settings.output = static_cast<ShaderImport::Output>(find_choice(
-            "import: --encoded", options.encoded, {"linear", "srgb", "gamma22", "gamma24"}));
+        settings.output = static_cast<ShaderImport::Output>(
+            find_choice("encoded", options.encoded, {"linear", "srgb", "gamma22", "gamma24"}));
     }
     return settings;
 }

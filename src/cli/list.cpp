@@ -13,6 +13,7 @@
 #include "cli/command.h"
 #include "cli/json.h"
 #include "cli/json_forms.h"
+#include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/suggestions.h"
 #include "tonewright/definition.h"
@@ -366,7 +367,7 @@ void print_hosts() {
             "{}\n"
             "      interpolation  {}\n      how to load    {}\n      tested         {}\n",
             host.id, host.title, format_of(host), taken_by(host), output_of(host),
-            host.interpolation, lut_steps_of(host, host.format),
+            host.interpolation, render(lut_steps_of(host, host.format), command_style()),
             host.tested.empty() ? "the file format, not the application" : host.tested);
         if (!reads_chains(host, host.format) && reads_chains(host, LutFormat::ctf))
             fmt::print("      or clf, ctf    {}\n", host.chain_steps);
@@ -387,7 +388,7 @@ Json hosts_to_json() {
              {"takes_any_primaries", host.takes_any_primaries},
              {"display", host.display},
              {"interpolation", host.interpolation},
-             {"steps", lut_steps_of(host, host.format)},
+             {"steps", render(lut_steps_of(host, host.format), command_style())},
              {"chain_steps", host.chain_steps},
              {"tested", host.tested}});
     }

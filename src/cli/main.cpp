@@ -73,13 +73,29 @@ bool is_about_memory_now() {
     });
 }
 
-constexpr std::string_view kNotEnoughMemory = "not enough memory";
 bool is_out_of_memory = false;
 
 int report(const std::string& message, int exit_code) {
-    if (message.find(kNotEnoughMemory) != message.npos) is_out_of_memory = true;
     print_message(message);
     return exit_code;
+}
+
+int report_memory(const std::string& message) {
+    is_out_of_memory = true;
+    return report(message, kFile);
+}
+
+int report(const Problem& problem) {
+    is_out_of_memory = problem.kind == Problem::Kind::memory;
+    print_message(command_text(problem));
+    switch (problem.kind) {
+        case Problem::Kind::usage:
+            return kUsage;
+        case Problem::Kind::check:
+            return kCheckFailed;
+        default:
+            return kFile;
+    }
 }
 
 std::string exit_codes() {
@@ -135,21 +151,17 @@ int run(int argc, char** argv) {
         return report(command + e.path1().string() + ": " + e.code().message(), kFile);
     } catch (const std::system_error& e) {  // exceptions of printing, and a thread without a stack
         if (e.code() == std::errc::resource_unavailable_try_again)
-            return report(command + "not enough memory or threads", kFile);
+            return report_memory(command + "not enough memory or threads");
         return report("write: standard output: " + e.code().message(), kFile);
     } catch (const std::bad_alloc&) {
-        return report(command + std::string(kNotEnoughMemory), kFile);
+        return report_memory(command + "not enough memory");
     } catch (const DefinitionError& e) {
-        report(e.what(), kFile);
+        const int exit_code = report(e.problem());
         print_excerpt(e.excerpt());
-        return kFile;
-    } catch (const FileError& e) {
-        return report(e.what(), kFile);
+        return exit_code;
     } catch (const Error& e) {
-        return report(e.what(), kUsage);
-    } catch (const std::exception& e) {
-        // A warning with --strict is no class of its own, exceptions of libraries are.
-        if (typeid(e) == typeid(std::runtime_error)) return report(e.what(), kCheckFailed);
+        return report(e.problem());
+    } catch (const std::exception& e) {  // of another library
         return report(command + one_line(e.what()), kFile);
     }
 }

@@ -200,10 +200,9 @@ std::string page_of(const CommandTable& table, const ManualSource& source) {
 
 std::string page_of_tone_files(const ManualSource& source) {
     constexpr std::size_t longest = 1 << 20;
-    const std::string document =
-        read_file(source.reference, longest, [&](const std::string& reason) {
-            throw FileError("read: " + source.reference + ": " + reason);
-        });
+    const std::string document = read_file(source.reference, longest, [&](const Problem& why) {
+        throw FileError(within("read: " + source.reference, why));
+    });
     return header("tonewright-tone", 5, source.date, "files that define tone mapping operators") +
            ".SH DESCRIPTION\n"
            "A .tone file defines an operator. The commands of \\fBtonewright\\fR(1) take its name "

@@ -4,21 +4,114 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
-#include <stdexcept>
+#include <span>
+#include <string_view>
+#include <utility>
 
 #include "base/strings.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+std::string with_dashes(std::string_view name) {
+    std::string option = "--" + std::string(name);
+    std::replace(option.begin(), option.end(), '_', '-');
+    return option;
+}
+
+using Names = std::span<const std::pair<std::string_view, std::string_view>>;
+
+std::string named_in(Names names, std::string_view parameter) {
+    const auto found = std::find_if(names.begin(), names.end(),
+                                    [&](const auto& pair) { return pair.first == parameter; });
+    return with_dashes(found == names.end() ? parameter : found->second);
+}
+
+/// `--size` of `size`. Some options have another name than the field that they set.
+std::string option_of(std::string_view parameter) {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kOthers = {
+        {{"application", "for"}, {"custom", "operator"}}};
+    return named_in(kOthers, parameter);
+}
+
+/// The option that sets the parameter among others, or in some commands.
+std::string wider_option_of(std::string_view parameter) {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kOthers = {
+        {{"bins", "histogram-bins"},
+         {"high_percentile", "percentiles"},
+         {"histogram_max", "histogram-range"},
+         {"histogram_min", "histogram-range"},
+         {"input", "working"},
+         {"low_percentile", "percentiles"},
+         {"max_stops", "exposure-limits"},
+         {"method", "auto-exposure"},
+         {"min_stops", "exposure-limits"},
+         {"region", "meter-region"}}};
+    return named_in(kOthers, parameter);
+}
+
+}  // namespace
 
 MessageOptions& message_options() {
     static MessageOptions options;
     return options;
 }
 
+const MessageStyle& command_style() {
+    static const MessageStyle style = {
+        [](std::string_view parameter) {
+            // Options that stand for several values have their plural. A parameter that is no
+            // option, such as a file, is a word.
+            const std::string option = option_of(parameter);
+            for (const std::string& known : {option, option + "s", wider_option_of(parameter)}) {
+                if (message_options().options.contains(known)) return known;
+            }
+            std::string words(parameter);
+            std::replace(words.begin(), words.end(), '_', ' ');
+            return words;
+        },
+        [](std::string_view parameter, std::string_view value) {
+            if (parameter == "task") return fmt::format("`tonewright {}`", value);
+            if (parameter == "list")
+                return fmt::format("`tonewright list{}`", value == "inputs" ? " --inputs" : "");
+            if (parameter == "dimension") return fmt::format("--{}", value);
+            if (parameter == "settings") return fmt::format("--set {}=...", value);
+            const std::string option = option_of(parameter);
+            return value.empty() || value == "yes" ? option : fmt::format("{} {}", option, value);
+        }};
+    return style;
+}
+
+std::string command_text(const Problem& problem) {
+    const std::string text = render(problem, command_style());
+    const std::string& command = message_options().command;
+    return problem.what.empty() && !command.empty() ? command + ": " + text : text;
+}
+
+Problem command_problem(const std::exception& error) {
+    if (const auto* own = dynamic_cast<const Error*>(&error)) {
+        return {.kind = own->problem().kind,
+                .what = render(own->problem(), command_style()),
+                .error_number = own->problem().error_number};
+    }
+    if (dynamic_cast<const std::bad_alloc*>(&error))
+        return {.kind = Problem::Kind::memory, .what = "not enough memory"};
+    return {.kind = Problem::Kind::internal, .what = one_line(error.what())};
+}
+
+void throw_problem(const Problem& problem) {
+    if (problem.kind == Problem::Kind::file || problem.kind == Problem::Kind::memory)
+        throw FileError(problem);
+    throw Error(problem);
+}
+
 void print_message(const std::string& text) {
     const auto& named = message_options().named;
-    fmt::print(stderr, "tonewright: {}\n", one_line(named ? named(text) : text));
+    const std::string shown = render(text, command_style());
+    fmt::print(stderr, "tonewright: {}\n", one_line(named ? named(shown) : shown));
 }
 
 void print_excerpt(const std::string& lines) {
@@ -26,7 +119,8 @@ void print_excerpt(const std::string& lines) {
 }
 
 void print_result(const std::string& text) {
-    if (!message_options().is_quiet) fmt::print(stderr, "{}\n", one_line(text));
+    if (!message_options().is_quiet)
+        fmt::print(stderr, "{}\n", one_line(render(text, command_style())));
 }
 
 bool says_what_was_done() {
@@ -42,7 +136,8 @@ void ResultLine::print(const std::string& text) const {
 
 void warn(const std::string& text) {
     if (message_options().is_strict)
-        throw std::runtime_error(text + " (an error because of --strict)");
+        throw Error(Problem{.kind = Problem::Kind::check,
+                            .what = text + " (an error because of --strict)"});
     print_message("warning: " + text);
 }
 

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <chrono>
+#include <exception>
 #include <functional>
+#include <set>
 #include <string>
 
+#include "tonewright/error.h"
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -16,6 +19,9 @@ struct MessageOptions {
     bool is_strict = false;
     bool is_quiet = false;
     bool is_verbose = false;
+    /// The subcommand, and its options: `--size`.
+    std::string command = {};
+    std::set<std::string> options = {};
     /// Names in messages: temporary files of standard input and output are "-". Empty: as they are.
     std::function<std::string(std::string)> named = {};
 };
@@ -24,7 +30,17 @@ struct MessageOptions {
 /// them when it loads the module.
 [[nodiscard]] MessageOptions& message_options();
 
-/// Prints `tonewright: TEXT` on stderr, always on one line.
+/// How messages of the command write parameters: `--size is 3`, `--size 65`.
+[[nodiscard]] const MessageStyle& command_style();
+/// The problem in one line, with the subcommand first where it is about the request.
+[[nodiscard]] std::string command_text(const Problem& problem);
+/// An exception as a problem in the words of the command, of kind `internal` if it is not an Error.
+[[nodiscard]] Problem command_problem(const std::exception& error);
+/// @throws FileError  where a file or the memory is the reason; else Error
+[[noreturn]] void throw_problem(const Problem& problem);
+
+/// Prints `tonewright: TEXT` on stderr, always on one line, with its references to parameters in
+/// the style of the command.
 void print_message(const std::string& text);
 
 /// Lines of a file that a message is about, on stderr.
@@ -48,7 +64,7 @@ class ResultLine {
 
 /// `tonewright: warning: TEXT`, if a result may differ from the user's intention. Call it before
 /// the result is written.
-/// @throws std::runtime_error  --strict was given
+/// @throws Error  of kind `check`: --strict was given
 void warn(const std::string& text);
 
 TONEWRIGHT_NAMESPACE_END

@@ -270,7 +270,7 @@ const Option& Option::range(double low, double high) const {
 
 const Option& Option::choices(const std::vector<std::string>& texts) const {
     const auto as_listed = [app = app_, option = option_, texts](std::string& text) {
-        text = texts[find_choice(subject_of(*app, *option), text, texts)];
+        text = texts[find_choice(name_of(*option), text, texts, app->get_name())];
         return std::string();
     };
     option_->transform(CLI::Validator(as_listed, {}));
@@ -400,7 +400,15 @@ std::set<std::string> Command::given() const {
 }
 
 void Command::action(std::function<int()> run) const {
-    app_->callback([run = std::move(run), exit_code = exit_code_] { *exit_code = run(); });
+    app_->callback([run = std::move(run), exit_code = exit_code_, app = app_] {
+        MessageOptions& messages = message_options();
+        messages.command = app->get_name();
+        for (const CLI::Option* option : app->get_options()) {
+            for (const std::string& name : option->get_lnames())
+                messages.options.insert("--" + name);
+        }
+        *exit_code = run();
+    });
 }
 
 CommandLine::CommandLine(const std::string& name, const std::string& description,

@@ -34,12 +34,6 @@ std::optional<double> address_limit() {
     return static_cast<double>(limit.rlim_cur) / 1e6;
 }
 
-/// The loader's message if it has no addresses for a library.
-bool is_about_memory(std::string_view reason) {
-    return reason.find("failed to map segment") != reason.npos ||
-           reason.find("annot allocate memory") != reason.npos;
-}
-
 /// Static objects of the libraries below OpenImageIO start threads and allocate without checks. If
 /// the address space is limited, loading can therefore abort the process, crash or wait forever,
 /// with all signals blocked. A separate process tries it first.
@@ -61,9 +55,7 @@ bool survives_loading(const std::string& path) {
         (void)::setrlimit(RLIMIT_AS, &addresses);
         if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
             (void)::dup2(nowhere, STDERR_FILENO);
-        void* const module = ::dlopen(path.c_str(), kBinding);
-        // If it fails again, the second try reports the reason.
-        ::_exit(module || !is_about_memory(::dlerror()) ? 0 : 1);
+        ::_exit(::dlopen(path.c_str(), kBinding) ? 0 : 1);
     }
     if (child < 0) return false;
     const auto end = std::chrono::steady_clock::now() + kLongest;
@@ -95,13 +87,12 @@ const PictureCommands& load() {
                         "(ulimit -v)",
                         *limit));
     };
-    if (limit && !survives_loading(path)) fail_for_memory();
+    // A module that is there does not load for lack of addresses, where they are limited.
+    const bool is_limited = limit && ::access(path.c_str(), R_OK) == 0;
+    if (is_limited && !survives_loading(path)) fail_for_memory();
     void* module = ::dlopen(path.c_str(), kBinding);
-    if (!module) {
-        const std::string reason = ::dlerror();
-        if (limit && is_about_memory(reason)) fail_for_memory();
-        fail(reason);
-    }
+    if (!module && is_limited) fail_for_memory();
+    if (!module) fail(::dlerror());
     using Entry = decltype(&tonewright_picture_commands);
     const auto entry = reinterpret_cast<Entry>(::dlsym(module, kPictureCommandsEntry));
     const PictureCommands* commands = entry ? entry(kPictureCommandsBuild) : nullptr;

@@ -25,7 +25,7 @@ namespace {
 enum class Quantity : unsigned char { code, light, log };
 
 Quantity parse_quantity(const std::string& text) {
-    return static_cast<Quantity>(find_choice("plot: --y", text, {"code", "light", "log"}));
+    return static_cast<Quantity>(find_choice("y", text, {"code", "light", "log"}));
 }
 
 /// Display-linear 1: white in percent, or cd/m2 on HDR displays.

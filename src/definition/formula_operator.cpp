@@ -112,7 +112,7 @@ std::shared_ptr<const Operator> formula_operator(std::string_view given) {
             formula.f.push_back(parse_formula(part, scope));
         } catch (const FormulaError& e) {
             const bool has_steps = text.find_first_of(kSteps) != std::string_view::npos;
-            fail(text, "column " + std::to_string(begin + e.at.column) + ": " + e.what() +
+            fail(text, "column " + std::to_string(begin + e.at.column) + ": " + e.text() +
                            (has_steps ? "; a formula is an expression of x, or of r, g and b, with "
                                         "steps before it: a = x*2; a/(1 + a)"
                                       : ""));
@@ -147,7 +147,7 @@ std::shared_ptr<const Operator> formula_operator(std::string_view given) {
     try {
         (void)build_stages(*recipe, recipe->stages, {});
     } catch (const StageError& e) {
-        fail(text, e.what());
+        fail(text, e.text());
     }
     return op;
 }

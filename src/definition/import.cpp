@@ -318,7 +318,7 @@ ImportedShader imported(std::string_view text, const std::string& name,
     for (const auto& primaries : all)
         names.emplace_back(primaries.first);
     Operator op;
-    op.working = all[find_choice("import: --primaries", settings.primaries, names)].second;
+    op.working = all[find_choice("primaries", settings.primaries, names)].second;
     op.id = id_of(settings.id.empty() ? function.name : settings.id);
     op.title = printable(function.name);
     op.view = op.title;
@@ -343,7 +343,7 @@ ImportedShader imported(std::string_view text, const std::string& name,
         for (const GlslParameter& own : function.parameters)
             known.push_back(own.name);
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-        throw Error("import: --parameter is " + printable(key) + "; expected " +
+        throw Error("import: <<parameter>> is " + printable(key) + "; expected " +
                     (known.empty() ? "none: the function has no further argument or uniform"
                                    : join_choices(known) + did_you_mean(key, known)));
     }
@@ -378,7 +378,7 @@ ImportedShader imported(std::string_view text, const std::string& name,
             return build_stages(*recipe, recipe->stages, params);
         } catch (const StageError& e) {
             constexpr std::string_view kStage = "stage";
-            *wrong = "function" + std::string(e.what()).substr(kStage.size());
+            *wrong = "function" + std::string(e.text()).substr(kStage.size());
             throw;
         }
     };
@@ -410,7 +410,7 @@ ImportedShader imported(std::string_view text, const std::string& name,
         (void)parse_operator(result.definition, "the definition");
     } catch (const Error& e) {
         if (!wrong->empty()) throw NotFinite(function.at, *wrong);
-        throw FormulaError(function.at, e.what());
+        throw FormulaError(function.at, e.text());
     }
     return result;
 }
@@ -430,14 +430,14 @@ ImportedShader import_shader(std::string_view text, const std::string& name,
         }
     } catch (const FormulaError& e) {
         throw DefinitionError(name + ":" + std::to_string(e.at.line) + ":" +
-                                  std::to_string(e.at.column) + ": " + e.what(),
+                                  std::to_string(e.at.column) + ": " + e.text(),
                               caret_lines(text, e.at));
     }
 }
 
 ImportedShader load_shader(const std::string& path, const ShaderImport& settings) {
-    const std::string text = read_file(path, kLongestShader, [&](const std::string& reason) {
-        throw FileError("read: " + path + ": " + reason);
+    const std::string text = read_file(path, kLongestShader, [&](const Problem& why) {
+        throw FileError(within("read: " + path, why));
     });
     return with_memory_for(path, [&] { return import_shader(text, path, settings); });
 }

@@ -417,7 +417,7 @@ class Reader {
         } catch (const TomlError&) {
             throw;
         } catch (const Error& e) {
-            fail(value.at, e.what());
+            fail(value.at, e.text());
         }
         if (op_.output != OutputKind::code_value)
             fail(value.at, "display is given without kind = \"code_value\"; expected both");
@@ -468,7 +468,7 @@ class Reader {
         try {
             return parse(value.text);
         } catch (const FormulaError& e) {
-            fail(in_file(value, e.at), e.what());
+            fail(in_file(value, e.at), e.text());
         }
     }
 
@@ -630,7 +630,7 @@ class Reader {
         try {
             lut = tables_(path.string());
         } catch (const Error& e) {
-            fail(main.at, e.what());
+            fail(main.at, e.text());
         }
         const Value* const input = table.find("input");
         if (!input && lut.encoding.empty()) {
@@ -644,7 +644,7 @@ class Reader {
             stage.lut = {path.string(), encoding, space,
                          table_stages(lut, encoding, space, op_.working)};
         } catch (const Error& e) {
-            fail(input ? input->at : main.at, e.what());
+            fail(input ? input->at : main.at, e.text());
         }
     }
 
@@ -798,9 +798,9 @@ class Reader {
             } catch (const TomlError&) {
                 throw;
             } catch (const StageError& e) {  // of the inverse
-                fail(e.at, e.what());
+                fail(e.at, e.text());
             } catch (const Error& e) {
-                fail(stage.value_or(at), e.what());
+                fail(stage.value_or(at), e.text());
             }
         };
         build(nullptr, "", {});
@@ -828,7 +828,7 @@ std::shared_ptr<const Operator> parse_operator(std::string_view text, const std:
         return Reader(text, name, tables).read();
     } catch (const TomlError& e) {
         throw DefinitionError(name + ":" + std::to_string(e.at.line) + ":" +
-                                  std::to_string(e.at.column) + ": " + e.what(),
+                                  std::to_string(e.at.column) + ": " + e.text(),
                               caret_lines(text, e.at));
     }
 }
@@ -839,8 +839,8 @@ std::shared_ptr<const Operator> load_operator(const std::string& path, const Tab
         if (!tables) throw FileError("read: " + path + ": is a LUT; expected a .tone file here");
         return with_memory_for(path, [&] { return operator_of_table(tables(path), path); });
     }
-    const std::string text = read_file(path, kLongestFile, [&](const std::string& reason) {
-        throw FileError("read: " + path + ": " + reason);
+    const std::string text = read_file(path, kLongestFile, [&](const Problem& why) {
+        throw FileError(within("read: " + path, why));
     });
     return with_memory_for(path, [&] { return parse_operator(text, path, tables); });
 }

@@ -321,7 +321,7 @@ std::string definition_of(const ResolvedOperator& op) {
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {
-        throw Error(op.label + " has no definition in formulas: " + e.what());
+        throw Error(op.label + " has no definition in formulas: " + e.text());
     }
 }
 

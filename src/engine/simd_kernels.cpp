@@ -512,7 +512,7 @@ const Target& find_target(std::string_view name) {
     std::vector<std::string> names;
     for (const Target& target : targets())
         names.emplace_back(target.target);
-    return targets()[find_choice("simd engine: target", name, names)];
+    return targets()[find_choice("target", name, names, "simd engine")];
 }
 
 }  // namespace simd

@@ -203,7 +203,7 @@ class Parser {
             }
             return value;
         } catch (const GlslMisuse& e) {
-            fail(at.begin, e.what());
+            fail(at.begin, e.text());
         }
     }
     void count(const Token& at, int operations, bool is_constant) {
@@ -385,7 +385,7 @@ class Parser {
                                          " has no value; expected a constant or a uniform");
                 }
             } catch (const FormulaError& e) {
-                global.refusal = Refusal{0, e.what()};
+                global.refusal = Refusal{0, e.text()};
                 refused_at_.insert_or_assign(name.text, e.at);
                 at_ = begin;
                 frames_.clear();
@@ -469,8 +469,10 @@ class Parser {
         if (any && any->refusal) fail(any->refusal->offset, any->refusal->message);
         if (any) fail(any->name.begin, "function has other types; expected " + wanted);
         if (!name.empty() && !names.empty()) {
-            throw Error("import: --function is " + printable(name) + "; expected " +
-                        join_choices(names) + did_you_mean(name, names));
+            throw Error({.parameter = "function",
+                         .value = printable(name),
+                         .expected = join_choices(names),
+                         .suggestion = suggested_names(name, names)});
         }
         const Function* last = functions_.empty() ? nullptr : &functions_.back();
         if (last && last->refusal) fail(last->refusal->offset, last->refusal->message);
@@ -484,8 +486,8 @@ class Parser {
         const auto set = settings_.parameters.find(name);
         if (set == settings_.parameters.end() && !otherwise) {
             fail(at.begin, std::string(what) + " " + printable(name) +
-                               " has no value; expected one, as with --parameter " +
-                               printable(name) + "=1");
+                               " has no value; expected one, as with <<parameter=" +
+                               printable(name) + "=1>>");
         }
         const double value = set == settings_.parameters.end() ? *otherwise : set->second;
         if (!type.is_scalar())

@@ -222,8 +222,9 @@ void draw_gradients(Sheet& sheet, double left, double top, double bottom) {
 void check_range(const char* name, int value, int low) {
     constexpr int kLargest = 16384;
     if (value >= low && value <= kLargest) return;
-    throw Error(
-        fmt::format("chart: {} is {}; expected [{}, {}] pixels", name, value, low, kLargest));
+    throw Error({.parameter = name,
+                 .value = fmt::to_string(value),
+                 .expected = fmt::format("[{}, {}] pixels", low, kLargest)});
 }
 
 }  // namespace

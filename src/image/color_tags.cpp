@@ -264,7 +264,7 @@ ColorDescription describe_color(const OIIO::ImageSpec& spec, std::string_view fo
     said.missing = assumes_linear
                        ? fmt::format(
                              "most applications read {} as linear light, but the file holds code "
-                             "values of {}; for linear light, use --display linear",
+                             "values of {}; for linear light, use <<display=linear>>",
                              row->title, color->name)
                        : fmt::format("{} does not say that its colors are {}: viewers assume sRGB",
                                      row->title, color->name);

@@ -82,7 +82,7 @@ ImageBuf shown_scene(const ImageBuf& picture, const ROI& part) {
             }
         }
     });
-    if (picture.has_error()) throw Error("compare: " + first_line(picture.geterror()));
+    if (picture.has_error()) throw Error(problem_of_library(picture.geterror()));
     return scene;
 }
 
@@ -125,7 +125,7 @@ ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
                         window.width(), window.height(), from.width(), from.height()));
     }
     filter_down(small, scene, ROI(left, right, top, bottom, 0, 1, 0, spec.nchannels));
-    if (small.has_error()) throw Error("compare: " + first_line(small.geterror()));
+    if (small.has_error()) throw Error(problem_of_library(small.geterror()));
     return small;
 }
 
@@ -152,8 +152,8 @@ void require_same_size(const ImageBuf& a, const ImageBuf& b) {
     const ROI x = shown_window(a);
     const ROI y = shown_window(b);
     if (x.width() == y.width() && x.height() == y.height()) return;
-    throw Error(fmt::format("compare: picture is {} x {}; expected {} x {}, as the first",
-                            y.width(), y.height(), x.width(), x.height()));
+    throw Error(Problem{.value = fmt::format("picture is {} x {}", y.width(), y.height()),
+                        .expected = fmt::format("{} x {}, as the first", x.width(), x.height())});
 }
 
 std::span<const Rgb> pixels_of(const ImageBuf& rgb) {
@@ -185,7 +185,7 @@ struct Caption {
 }  // namespace
 
 ImageBuf resize_scene(const ImageBuf& picture, int width) {
-    if (picture.deep()) throw Error("compare: picture is deep; expected flat pixels");
+    if (picture.deep()) throw Error(Problem{.value = "picture is deep", .expected = "flat pixels"});
     const PictureSize size = fitted_size(picture, width);
     const ROI window = shown_window(picture);
     if (size.height > kLargestSheet) {
@@ -198,7 +198,7 @@ ImageBuf resize_scene(const ImageBuf& picture, int width) {
     if (size.width == window.width() && size.height == window.height()) return scene;
     if (size.width > window.width()) return enlarge(scene, size);
     ImageBuf small = filtered_down(scene, size);
-    if (small.has_error()) throw Error("compare: " + first_line(small.geterror()));
+    if (small.has_error()) throw Error(problem_of_library(small.geterror()));
     return small;
 }
 
@@ -223,7 +223,8 @@ int choose_columns(int count, int cell_width, int cell_height) {
 
 int split_at(int length, double position) {
     if (!(position >= 0 && position <= 1))
-        throw Error(fmt::format("compare: --split is {}; expected [0, 1]", position));
+        throw Error(
+            {.parameter = "split", .value = fmt::to_string(position), .expected = "[0, 1]"});
     return static_cast<int>(std::lround(position * length));
 }
 

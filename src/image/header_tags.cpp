@@ -272,7 +272,7 @@ void read_radiance(HeaderFile& file, ImageSpec& spec) {
     // viewers show the pixels as they are stored. So do we, because hosts must agree.
     if (exposure != 1) {
         add_ignored(spec, fmt::format("EXPOSURE: it is {}, and pixels are taken as stored, as most "
-                                      "readers do; for radiance before it, use --exposure {}",
+                                      "readers do; for radiance before it, use <<exposure={}>>",
                                       shortest(exposure), stops_of(1 / exposure)));
     }
     if (correction != std::array<double, 3>{1, 1, 1}) {

@@ -405,7 +405,7 @@ class HeifInput final : public OIIO::ImageInput {
             step();
             return true;
         } catch (...) {
-            return report_thrown(*this, "");
+            return report_thrown(*this, "", true);
         }
     }
 
@@ -443,10 +443,9 @@ class HeifInput final : public OIIO::ImageInput {
         if (width < 1 || height < 1)
             throw Error(fmt::format("it declares {} x {} pixels", width, height));
         if (static_cast<double>(width) * height > max_pixels_) {
-            throw Error(
-                fmt::format("it declares {} x {} pixels; expected at most {:.0f} in all "
-                            "(--max-pixels)",
-                            width, height, max_pixels_));
+            throw Error(Problem{
+                .value = fmt::format("it declares {} x {} pixels", width, height),
+                .expected = fmt::format("at most {:.0f} in all (<<max_pixels>>)", max_pixels_)});
         }
         decode_pixels(width, height);
         ImageSpec spec(width, height, static_cast<int>(planes_.size()),
@@ -608,7 +607,7 @@ std::unique_ptr<OIIO::ImageInput> open_heif(const std::string& path, double max_
     std::unique_ptr<OIIO::ImageInput> in = std::make_unique<HeifInput>(max_pixels);
     ImageSpec spec;
     if (!in->open(path, spec))
-        throw FileError(fmt::format("{}: cannot read: {}", path, first_line(in->geterror())));
+        throw FileError(within(path + ": cannot read", problem_of_library(in->geterror())));
     return in;
 }
 

@@ -64,7 +64,8 @@ void set_alpha(WriteOptions& options, std::string_view text) {
     constexpr std::array kAlphas = {Alpha::keep, Alpha::ignore, Alpha::opaque, Alpha::over};
     options.alpha = kAlphas[find_choice("alpha", name, {"keep", "ignore", "opaque", "over:R,G,B"})];
     if (!is_over) {
-        if (options.alpha == Alpha::over) throw Error("alpha is over:R,G,B; expected numbers");
+        if (options.alpha == Alpha::over)
+            throw Error({.parameter = "alpha", .value = "over:R,G,B", .expected = "numbers"});
         return;
     }
     const std::string numbers(text.substr(kOver.size()));
@@ -77,8 +78,9 @@ void set_alpha(WriteOptions& options, std::string_view text) {
         const bool is_last = comma == numbers.size();
         if (error != std::errc() || stop != end || !(value >= 0 && value <= 1) ||
             is_last != (c == 2)) {
-            throw Error(fmt::format(
-                "alpha is {}; expected over:R,G,B with three code values in [0, 1]", text));
+            throw Error({.parameter = "alpha",
+                         .value = std::string(text),
+                         .expected = "over:R,G,B with three code values in [0, 1]"});
         }
         at = std::min(comma + 1, numbers.size());
     }
@@ -100,7 +102,7 @@ OIIO::TypeDesc parse_pixel_type(std::string_view text) {
     names.reserve(types.size());
     for (const auto& type : types)
         names.push_back(type.first);
-    return types[find_choice("pixel type", text, names)].second;
+    return types[find_choice("pixel_type", text, names)].second;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -93,7 +93,8 @@ Lut lut_of_picture(const OIIO::ImageBuf& picture, const std::string& path) {
 }
 
 OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
-    if (!is_picture_format(format)) throw Error("lut: format is not a picture");
+    if (!is_picture_format(format))
+        throw Error({.parameter = "format", .value = name_of(format), .expected = "a picture"});
     const int n = lut.size;
     const int level = static_cast<int>(std::lround(std::sqrt(n)));
     const int width = format == LutFormat::hald ? n * level : n * n;

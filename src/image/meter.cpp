@@ -29,8 +29,9 @@ using OIIO::ROI;
 
 void check_number(const char* name, double value, double least, double most) {
     if (value >= least && value <= most) return;
-    throw Error(fmt::format("meter: {} is {}; expected [{}, {}]", name, shortest(value),
-                            shortest(least), shortest(most)));
+    throw Error({.parameter = name,
+                 .value = shortest(value),
+                 .expected = fmt::format("[{}, {}]", shortest(least), shortest(most))});
 }
 
 ROI data_window(const ImageSpec& spec) {
@@ -58,10 +59,11 @@ bool is_empty(const ROI& roi) { return roi.width() <= 0 || roi.height() <= 0 || 
 void require_pixels(const ImageSpec& spec, const MeterOptions& options) {
     if (!is_empty(measured_window(spec, options))) return;
     const ROI& r = options.region;
-    throw Error(fmt::format(
-        "meter: region is {},{},{},{} (x, y, width, height); expected some pixels of the picture, "
-        "which is {},{},{},{}",
-        r.xbegin, r.ybegin, r.width(), r.height(), spec.x, spec.y, spec.width, spec.height));
+    throw Error({.parameter = "region",
+                 .value = fmt::format("{},{},{},{} (x, y, width, height)", r.xbegin, r.ybegin,
+                                      r.width(), r.height()),
+                 .expected = fmt::format("some pixels of the picture, which is {},{},{},{}", spec.x,
+                                         spec.y, spec.width, spec.height)});
 }
 
 /// Meters a whole picture in memory.
@@ -75,20 +77,22 @@ PicturePass pass_over(const ImageBuf& src, const MeterOptions& options) {
 
 void check_meter_options(const MeterOptions& o) {
     (void)source_color({}, o.input);
-    check_number("reference white", o.reference_white, 50, 1000);
+    check_number("reference_white", o.reference_white, 50, 1000);
     check_number("delta", o.delta, 1e-10, 1);
-    check_number("histogram minimum", o.histogram_min, -64, 128);
-    check_number("histogram maximum", o.histogram_max, -64, 128);
+    check_number("histogram_min", o.histogram_min, -64, 128);
+    check_number("histogram_max", o.histogram_max, -64, 128);
     check_number("bins", o.bins, 3, 4096);
-    check_number("low percentile", o.low_percentile, 0, 100);
-    check_number("high percentile", o.high_percentile, 0, 100);
+    check_number("low_percentile", o.low_percentile, 0, 100);
+    check_number("high_percentile", o.high_percentile, 0, 100);
     if (!(o.histogram_min < o.histogram_max)) {
-        throw Error(fmt::format("meter: histogram minimum is {}; expected less than its maximum {}",
-                                shortest(o.histogram_min), shortest(o.histogram_max)));
+        throw Error({.parameter = "histogram_min",
+                     .value = shortest(o.histogram_min),
+                     .expected = "less than its maximum " + shortest(o.histogram_max)});
     }
     if (!(o.low_percentile < o.high_percentile)) {
-        throw Error(fmt::format("meter: low percentile is {}; expected less than the high one, {}",
-                                shortest(o.low_percentile), shortest(o.high_percentile)));
+        throw Error({.parameter = "low_percentile",
+                     .value = shortest(o.low_percentile),
+                     .expected = "less than the high one, " + shortest(o.high_percentile)});
     }
 }
 
@@ -204,7 +208,7 @@ Metering meter_file(const std::string& path, const MeterOptions& options, int nt
     try {
         require_pixels(spec, options);
     } catch (const Error& e) {
-        throw Error(fmt::format("{}: {}", path, e.what()));
+        throw Error(within(path, e.problem()));
     }
     return about_picture(path, [&] {
         return measure_file(path, options, SceneMeter::Figures::all, nthreads).metering();
@@ -257,20 +261,18 @@ ExposureRule::Method parse_meter_method(std::string_view text) {
     using Method = ExposureRule::Method;
     constexpr Method kMethods[] = {Method::log_average, Method::histogram, Method::mean,
                                    Method::maximum};
-    return kMethods[find_choice("meter: method", text,
-                                {"log-average", "histogram", "mean", "max"})];
+    return kMethods[find_choice("method", text, {"log-average", "histogram", "mean", "max"})];
 }
 
 void check_exposure_rule(const ExposureRule& rule) {
     if (rule.key) check_number("key", *rule.key, 1e-3, 16);
-    check_number("lower exposure limit", rule.min_stops, -40, 40);
-    check_number("upper exposure limit", rule.max_stops, -40, 40);
+    check_number("min_stops", rule.min_stops, -40, 40);
+    check_number("max_stops", rule.max_stops, -40, 40);
     check_number("compensation", rule.compensation, -20, 20);
     if (rule.min_stops > rule.max_stops) {
-        throw Error(
-            fmt::format("meter: lower exposure limit is {}; expected no more than the upper one, "
-                        "{}",
-                        shortest(rule.min_stops), shortest(rule.max_stops)));
+        throw Error({.parameter = "min_stops",
+                     .value = shortest(rule.min_stops),
+                     .expected = "no more than the upper one, " + shortest(rule.max_stops)});
     }
 }
 

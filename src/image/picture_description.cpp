@@ -94,8 +94,9 @@ SourceColor named_color(const char* attribute, const std::string& name) {
     try {
         return find_source_color(name);
     } catch (const Error& e) {
-        throw PictureError(
-            fmt::format("{} of the picture: {}; or name an input space", attribute, e.what()));
+        Problem problem = within(std::string(attribute) + " of the picture", e.problem());
+        problem.expected += ", or name an input space";
+        throw PictureError(problem);
     }
 }
 
@@ -143,7 +144,7 @@ Finding by_icc(const ImageSpec& spec) {
     try {
         icc = color_of_icc(bytes, spec.nchannels < 3 ? 1 : 3, "the picture");
     } catch (const Error& e) {
-        throw PictureError(fmt::format("{}; or name an input space", e.what()));
+        throw PictureError(fmt::format("{}; or name an input space", e.text()));
     }
     if (icc.code_points) {
         const auto [primaries, transfer] = *icc.code_points;
@@ -488,7 +489,7 @@ Finding tagged_light(const ImageSpec& spec) {
 
 Found color_of(const ImageSpec& spec, std::string_view input, std::vector<std::string>* ignored) {
     if (Finding light = tagged_light(spec)) return std::move(*light);
-    if (!is_same_name(input, kAutoInput)) return {find_source_color(input), "--input"};
+    if (!is_same_name(input, kAutoInput)) return {find_source_color(input), "<<input>>"};
     if (const std::string why = spec.get_string_attribute(file_tag::kImpossible); !why.empty())
         throw PictureError(why);
     const std::string format = format_of(spec);

@@ -56,11 +56,14 @@ decltype(auto) about_picture(const std::string& path, const Step& step) {
     try {
         return with_memory_for(path, step);
     } catch (const PictureError& e) {
-        throw FileError(path + ": " + e.what());
+        throw FileError(within(path, e.problem()));
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {
-        throw FileError(path + ": " + e.what());
+        using Kind = Problem::Kind;
+        const Kind kind = e.problem().kind;
+        if (kind == Kind::check || kind == Kind::canceled) throw;  // of a callback
+        throw FileError(within(path, e.problem()));
     }
 }
 
@@ -187,6 +190,7 @@ class TONEWRIGHT_API PictureWriter {
     class LightLevelMeter;
 
     [[noreturn]] void fail(const std::string& reason) const;
+    [[noreturn]] void fail(const Problem& why) const;
     void check_disk() const;
     /// OpenEXR 3.1 forgets that it could not compress a block of rows, such as without memory: it
     /// writes no more of this call, and takes later rows from before the given ones.

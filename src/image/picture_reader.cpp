@@ -30,8 +30,12 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ROI;
 
+[[noreturn]] void cannot_read(const std::string& path, Problem why) {
+    const bool is_memory = why.kind == Problem::Kind::memory;
+    throw FileError(within(is_memory ? path : path + ": cannot read", std::move(why)));
+}
 [[noreturn]] void cannot_read(const std::string& path, const std::string& reason) {
-    throw FileError(fmt::format("{}: cannot read: {}", path, reason));
+    cannot_read(path, Problem{.kind = Problem::Kind::file, .value = reason});
 }
 
 /// If a file is truncated, OpenImageIO's reader delivers the previous contents of its memory. SMPTE
@@ -92,9 +96,10 @@ void check_dpx_size(const std::string& path) {
 
 [[noreturn]] void refuse_size(const std::string& path, double width, double height,
                               double max_pixels) {
-    cannot_read(path, fmt::format("it declares {:.0f} x {:.0f} pixels; expected at most {:.0f} in "
-                                  "all (--max-pixels)",
-                                  width, height, max_pixels));
+    cannot_read(
+        path,
+        Problem{.value = fmt::format("it declares {:.0f} x {:.0f} pixels", width, height),
+                .expected = fmt::format("at most {:.0f} in all (<<max_pixels>>)", max_pixels)});
 }
 
 /// OpenImageIO's reader of JPEG 2000 decodes the picture while it opens it. ISO/IEC 15444-1: the
@@ -141,11 +146,11 @@ void check_jpeg2000_size(const std::string& path, double max_pixels) {
 
 /// The reason why a picture could not be opened, in one line.
 /// @param reported  OpenImageIO's message
-std::string why_not_open(const std::string& path, const std::string& reported) {
-    if (std::string why = why_not_readable(path); !why.empty()) return why;
+Problem why_not_open(const std::string& path, const std::string& reported) {
+    if (std::optional<Problem> why = why_not_readable(path)) return *std::move(why);
     std::error_code error;
-    if (std::filesystem::file_size(path, error) == 0) return "the file is empty";
-    return first_line(reported);
+    if (std::filesystem::file_size(path, error) == 0) return {.value = "the file is empty"};
+    return problem_of_library(reported);
 }
 
 /// More subimages are not looked at: a damaged TIFF file may declare an endless chain.
@@ -220,7 +225,7 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     if (!config) config = &straight;
     const std::unique_lock lock = lock_header(path);
     // A name without a file is one that a reader understands, or has its reason in the system.
-    if (!why_not_readable(path).empty()) {
+    if (why_not_readable(path)) {
         std::unique_ptr<OIIO::ImageInput> in;
         if (path.find('?') != std::string::npos) in = OIIO::ImageInput::open(path, config);
         if (!in) cannot_read(path, why_not_open(path, OIIO::geterror()));
@@ -257,7 +262,7 @@ static std::string radiance_of_xyz(const std::string& path) {
     if (!head.starts_with("#?") || at == std::string::npos || at > end) return {};
     constexpr std::size_t kLongest = std::size_t{4} << 30;
     std::string bytes =
-        read_file(path, kLongest, [&](const std::string& reason) { cannot_read(path, reason); });
+        read_file(path, kLongest, [&](const Problem& why) { cannot_read(path, why); });
     return bytes.replace(at, kXyz.size(), kRgb);
 }
 
@@ -270,7 +275,8 @@ PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOp
         in_ = OIIO::ImageInput::create("hdr");
         OIIO::ImageSpec spec;
         if (!in_ || !in_->set_ioproxy(memory_.get()) || !in_->open(path, spec))
-            cannot_read(path, in_ ? first_line(in_->geterror()) : "this format is not supported");
+            cannot_read(path,
+                        problem_of_library(in_ ? in_->geterror() : "this format is not supported"));
     }
     // ImageBuf is not used: it asks the shared cache, which may have an older file of this name,
     // and it ignores errors that a reader reports while it delivers pixels.
@@ -300,7 +306,7 @@ PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOp
     try {
         spec_ = resized_spec(stored_, options.resize, options.max_pixels);
     } catch (const PictureError& e) {
-        cannot_read(path, e.what());
+        cannot_read(path, e.problem());
     }
     resizing_.emplace();
 }
@@ -393,7 +399,7 @@ void PictureReader::choose_subimage(const ReadOptions& options) {
     }
     if (!in_->seek_subimage(subimage_, 0)) cannot_read(path_, "it has no picture");
     const std::string name = name_of(in_->spec());
-    note(fmt::format("subimage is {}{}, of {}; --subimage chooses another", subimage_,
+    note(fmt::format("subimage is {}{}, of {}; <<subimage>> chooses another", subimage_,
                      name.empty() ? "" : fmt::format(" ({})", printable(name)),
                      format == "openexr" ? names : fmt::to_string(count)));
 }
@@ -428,13 +434,13 @@ void PictureReader::choose_layer(const ReadOptions& options) {
         const bool is_luminance = spec_.channelindex("RY") >= 0 || spec_.channelindex("BY") >= 0;
         if (!is_luminance)
             warn(fmt::format("no layer is a picture in color: channels {} are taken{}", taken,
-                             layers.empty() ? "" : "; --layer chooses another"));
+                             layers.empty() ? "" : "; <<layer>> chooses another"));
         return;
     }
     deliver(order_of(*layer, spec_), layer->channels.size() > 3);
     spec_.attribute(file_tag::kLayer, layer->name);
     if (layers.size() > 1 && options.note) {
-        options.note(fmt::format("layer is {}, of {}; --layer chooses another",
+        options.note(fmt::format("layer is {}, of {}; <<layer>> chooses another",
                                  layer->name.empty() ? "RGB" : printable(layer->name),
                                  layer_names(layers)));
     }
@@ -468,8 +474,8 @@ void PictureReader::check(bool was_read) const {
     if (was_read && !in_->has_error()) return;
     const std::string reported = in_->geterror();
     // Readers of DPX and PNM do not report a file that ends too early.
-    cannot_read(path_,
-                reported.empty() ? "the file is truncated or damaged" : first_line(reported));
+    cannot_read(path_, problem_of_library(reported.empty() ? "the file is truncated or damaged"
+                                                           : reported));
 }
 
 void PictureReader::read_stored(int ybegin, int yend, std::byte* to) {

@@ -361,10 +361,12 @@ void PictureWriter::check_compression() const {
     const bool is_default =
         name.empty() && (format() == "jpeg" || format() == "webp" || format() == "heif");
     if (is_default || std::find(with.begin(), with.end(), name) != with.end()) return;
-    throw Error(fmt::format("{}: quality is {}; expected {}", path_,
-                            has_number ? text.substr(colon + 1) : fmt::to_string(quality),
-                            with.empty() ? fmt::format("none, because {} is lossless", format())
-                                         : "--compression " + join_choices(with) + " with it"));
+    throw Error({.what = path_,
+                 .parameter = "quality",
+                 .value = has_number ? text.substr(colon + 1) : fmt::to_string(quality),
+                 .expected = with.empty()
+                                 ? fmt::format("none, because {} is lossless", format())
+                                 : fmt::format("<<compression={}>> with it", join_choices(with))});
 }
 
 void PictureWriter::check_subsampling() const {
@@ -411,15 +413,19 @@ void PictureWriter::set_compression(ImageSpec& spec) const {
 PictureWriter::~PictureWriter() = default;
 
 void PictureWriter::fail(const std::string& reason) const {
-    throw FileError(fmt::format("{}: cannot write: {}", path_, reason));
+    fail(Problem{.kind = Problem::Kind::file, .value = reason});
+}
+
+void PictureWriter::fail(const Problem& why) const {
+    throw FileError(within(path_ + ": cannot write", why));
 }
 
 void PictureWriter::check_disk() const {
-    if (proxy_ && proxy_->error_number()) fail(reason_of(proxy_->error_number()));
+    if (proxy_ && proxy_->error_number()) fail(problem_of_system(proxy_->error_number()));
 }
 
 ImageBuf PictureWriter::checked(ImageBuf&& changed) const {
-    if (changed.has_error()) fail(first_line(changed.geterror()));
+    if (changed.has_error()) fail(problem_of_library(changed.geterror()));
     return std::move(changed);
 }
 
@@ -502,10 +508,13 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     if (!same && !is_kept) {
         const double most = std::max(options_.max_pixels, 4 * static_cast<double>(data.npixels()));
         if (static_cast<double>(window.npixels()) > most) {
-            throw FileError(fmt::format(
-                "{}: cannot write: the display window is {} x {} pixels, the data window {} x {}; "
-                "expected at most {:.0f} pixels (--max-pixels) to fill with black",
-                path_, window.width(), window.height(), data.width(), data.height(), most));
+            throw FileError(
+                {.what = path_ + ": cannot write",
+                 .value =
+                     fmt::format("the display window is {} x {} pixels, the data window {} x {}",
+                                 window.width(), window.height(), data.width(), data.height()),
+                 .expected = fmt::format(
+                     "at most {:.0f} pixels (<<max_pixels>>) to fill with black", most)});
         }
         window_ = window;
         window_->chbegin = 0;
@@ -570,7 +579,7 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
     const ImageSpec pixel(1, 1, spec.nchannels, spec.format);
     const std::vector<float> black(static_cast<std::size_t>(spec.nchannels));
     out->set_ioproxy(&proxy);
-    if (!out->open(name, pixel)) fail(first_line(out->geterror()));
+    if (!out->open(name, pixel)) fail(problem_of_library(out->geterror()));
     spec.format = out->spec().format;
     out->write_scanline(0, 0, OIIO::TypeFloat, black.data());
     out->close();
@@ -578,7 +587,7 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
 }
 
 void PictureWriter::open(const ImageSpec& picture) {
-    if (const int error = temporary_->check_target()) fail(reason_of(error));
+    if (const int error = temporary_->check_target()) fail(problem_of_system(error));
     ImageSpec spec = plan(picture);
     // These writers record the time of writing.
     if (format() == "openexr" || format() == "tiff" || format() == "dpx") {
@@ -610,14 +619,14 @@ void PictureWriter::open(const ImageSpec& picture) {
     } else {
         // Opens this file, and not a link that another program put there.
         const int file = temporary_->create();
-        if (file < 0) fail(reason_of(errno));
+        if (file < 0) fail(problem_of_system(errno));
         ::close(file);
     }
     const bool is_open = [&] {
         const FileCreation creation;  // the writer may open the file by its name
         return out_->open(name, spec);
     }();
-    if (!is_open) fail(first_line(out_->geterror()));
+    if (!is_open) fail(problem_of_library(out_->geterror()));
     if (proxy_ && format() == "openexr") {
         rows_of_block_ = rows_of_block(out_->spec().get_string_attribute("compression", "zip"));
         proxy_->begin_blocks();
@@ -695,12 +704,12 @@ void PictureWriter::warn_of_cover() const {
     if (!watches_cover_ || !options_.warn) return;
     if (!has_cover_) {
         options_.warn(
-            "alpha is 0 everywhere, so viewers show nothing; --alpha ignore leaves it out, --alpha "
-            "opaque makes it 1");
+            "alpha is 0 everywhere, so viewers show nothing; <<alpha=ignore>> leaves it out, "
+            "<<alpha=opaque>> makes it 1");
     } else if (becomes_straight_ && lost_count_ > 0) {
         options_.warn(
             fmt::format("{} % of the pixels have more light than their alpha carries (flames, "
-                        "glass), and {} cannot hold it; --alpha opaque or ignore keeps it, as "
+                        "glass), and {} cannot hold it; <<alpha=opaque>> or ignore keeps it, as "
                         "does EXR",
                         percent_text(lost_count_ / std::max(pixel_count_, 1.0)), format()));
     }
@@ -821,7 +830,7 @@ void PictureWriter::write_fitted(const ImageBuf& rows) {
                                   rows.localpixels(), rows.pixel_stride(), rows.scanline_stride());
     }
     check_disk();
-    if (!written) fail(first_line(rows.has_error() ? rows.geterror() : out_->geterror()));
+    if (!written) fail(problem_of_library(rows.has_error() ? rows.geterror() : out_->geterror()));
     rows_written_ += part.height();
     check_blocks();
 }
@@ -968,15 +977,15 @@ void PictureWriter::finish() {
     const bool is_avif = codec() == "avif";
     const std::string file_format(format());
     const ImageSpec wanted = out_->spec();
-    if (!out_->close()) fail(first_line(out_->geterror()));
+    if (!out_->close()) fail(problem_of_library(out_->geterror()));
     out_.reset();  // some write their last bytes only now
     if (light_levels_) proxy_->patch(light_levels_place_, clli_chunk(light_levels_->levels()));
     if (proxy_) {
-        if (const int error = proxy_->finish()) fail(reason_of(error));
+        if (const int error = proxy_->finish()) fail(problem_of_system(error));
         has_proxy_ = true;
     }
     check_written(wanted, file_format, is_avif);
-    if (const int error = temporary_->keep()) fail(reason_of(error));
+    if (const int error = temporary_->keep()) fail(problem_of_system(error));
     // Readers that use OIIO's shared cache get the new file.
     auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one
     if (!cache) return;                           // no memory for a first one

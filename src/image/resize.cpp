@@ -35,8 +35,9 @@ constexpr const char* kFilter = "lanczos3";
 constexpr const char* kFilterOfLamps = "triangle";
 
 [[noreturn]] void refuse_text(std::string_view text) {
-    throw Error("resize is " + printable(text) +
-                "; expected WxH, W or P%, such as 1920x1080, 1920 or 50%");
+    throw Error({.parameter = "resize",
+                 .value = printable(text),
+                 .expected = "WxH, W or P%, such as 1920x1080, 1920 or 50%"});
 }
 
 /// A whole number from 1 to the largest `int`.
@@ -399,8 +400,8 @@ ResizeSize parse_resize(std::string_view text) {
 
 ImageSpec resized_spec(const ImageSpec& picture, std::string_view size, double max_pixels) {
     if (picture.depth > 1) {
-        throw PictureError(fmt::format(
-            "picture has {} slices; expected a flat picture with --resize", picture.depth));
+        throw PictureError(Problem{.value = fmt::format("picture has {} slices", picture.depth),
+                                   .expected = "a flat picture with <<resize>>"});
     }
     const ResizeSize wanted = parse_resize(size);
     const Axis x = axis_x(picture);
@@ -421,9 +422,10 @@ ImageSpec resized_spec(const ImageSpec& picture, std::string_view size, double m
     height = std::max(std::round(height), 1.0);
     const auto check = [&](double w, double h) {
         if (w * h <= max_pixels) return;
-        throw PictureError(fmt::format(
-            "resize is {}: {:.0f} x {:.0f} pixels; expected at most {:.0f} in all (--max-pixels)",
-            size, w, h, max_pixels));
+        throw PictureError(
+            {.parameter = "resize",
+             .value = fmt::format("{}: {:.0f} x {:.0f} pixels", size, w, h),
+             .expected = fmt::format("at most {:.0f} in all (<<max_pixels>>)", max_pixels)});
     };
     check(width, height);
     if (lies) std::swap(width, height);

@@ -130,9 +130,10 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
                     tonemap_file(own ? *own : tonemapper, frame.in, frame.out, write, read,
                                  nthreads);
                 }
+            } catch (const Error& e) {
+                frame.problem = e.problem();
             } catch (const std::exception& e) {
-                frame.error = e.what();
-                frame.is_file_error = dynamic_cast<const FileError*>(&e) != nullptr;
+                frame.problem = Problem{.kind = Problem::Kind::internal, .what = e.what()};
             }
             const std::lock_guard lock(mutex);
             if (options.done) options.done(frame);

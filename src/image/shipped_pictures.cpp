@@ -31,7 +31,7 @@ constexpr int kOversampling = 4;
 std::string encode_png(const ImageBuf& picture, const OIIO::TypeDesc& type) {
     OIIO::Filesystem::IOVecOutput memory;  // before what writes to it until it ends
     const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("png");
-    if (!out) throw Error("bake: PNG: " + first_line(OIIO::geterror()));
+    if (!out) throw Error(within("PNG", problem_of_library(OIIO::geterror())));
     OIIO::ImageSpec spec = picture.spec();
     spec.set_format(type);
     out->set_ioproxy(&memory);
@@ -39,7 +39,7 @@ std::string encode_png(const ImageBuf& picture, const OIIO::TypeDesc& type) {
     if (!picture.get_pixels(picture.roi(), OIIO::TypeDesc::FLOAT, pixels.data()) ||
         !out->open("lut.png", spec) || !out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) ||
         !out->close()) {
-        throw Error("bake: PNG: " + first_line(out->geterror()));
+        throw Error(within("PNG", problem_of_library(out->geterror())));
     }
     return {memory.buffer().begin(), memory.buffer().end()};
 }

@@ -626,7 +626,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
     ImageSpec fresh = result_spec(source, widens);
     if (!OIIO::ImageBufAlgo::IBAprep(roi, &dst, &src, nullptr, &fresh,
                                      OIIO::ImageBufAlgo::IBAprep_DST_FLOAT_PIXELS)) {
-        fail(first_line(dst.geterror()));
+        throw Error(problem_of_library(dst.geterror()));
     }
     if (!dst.localpixels()) {
         fail(dst.has_error() ? first_line(dst.geterror()) : "destination cannot be written");
@@ -651,7 +651,8 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
             }
         });
         if (error) std::rethrow_exception(error);
-        if (progress.stopped()) fail("canceled");
+        if (progress.stopped())
+            throw Error(Problem{.kind = Problem::Kind::canceled, .value = "canceled"});
         check_was_read(src, !unreadable);
     }
 }
@@ -737,11 +738,16 @@ Tonemapper Tonemapper::with_exposure(double stops) const {
     return Tonemapper(std::make_unique<const State>(*state_, stops));
 }
 
+void Tonemapper::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
+                     OIIO::ProgressCallback progress, void* progress_data) const {
+    Progress told(progress, progress_data);
+    state_->run(dst, src, roi, nthreads, told);
+}
+
 bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
                             OIIO::ProgressCallback progress, void* progress_data) const noexcept {
     try {
-        Progress told(progress, progress_data);
-        state_->run(dst, src, roi, nthreads, told);
+        run(dst, src, roi, nthreads, progress, progress_data);
         return true;
     } catch (...) {
         return report_thrown(dst, "tonemap: ");

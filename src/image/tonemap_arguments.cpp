@@ -17,7 +17,7 @@ double parse_number(std::string_view name, const std::string& value) {
     const char* end = value.data() + value.size();
     const auto [stop, error] = std::from_chars(value.data(), end, number);
     if (error != std::errc() || stop != end)
-        throw Error(std::string(name) + " is " + value + "; expected a number");
+        throw Error({.parameter = std::string(name), .value = value, .expected = "a number"});
     return number;
 }
 

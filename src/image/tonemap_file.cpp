@@ -39,10 +39,6 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 
-void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int nthreads) {
-    if (!tonemapper(to, from, {}, nthreads)) throw Error(one_line(to.geterror()));
-}
-
 /// Provenance of the result, without date and machine: the same run writes the same bytes.
 /// @param resize  @see ReadOptions::resize
 void say_how(ImageSpec& picture, const TonemapOptions& options, const std::string& resize) {
@@ -91,7 +87,7 @@ ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
     ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
     pixel.width = 1;
     ImageBuf result;
-    run(tonemapper, result, ImageBuf(pixel), 1);
+    tonemapper.run(result, ImageBuf(pixel), {}, 1);
     ImageSpec spec = result.spec();
     spec.width = source.width;
     spec.height = source.height;
@@ -165,7 +161,7 @@ class FilePass {
     void tonemap(Batch& batch) const {
         const ImageBuf source(spec_of_rows(source_, batch.ybegin, batch.yend), batch.source.data());
         ImageBuf result = result_of(batch);
-        run(tonemapper_, result, source, nthreads_);
+        tonemapper_.run(result, source, {}, nthreads_);
     }
     void write(Batch& batch) { writer_.write_rows(result_of(batch)); }
 
@@ -268,7 +264,7 @@ std::string finished_warning(const ImageSpec& spec, const TonemapOptions& option
     const std::string name = op.op->source == "typed" ? "the formula" : op.op->id;
     return fmt::format(
         "{}{} by {}), so {} tone maps it a second time; the operator clamp keeps the colors, "
-        "--input lin_rec709 takes the numbers as scene-linear",
+        "<<input=lin_rec709>> takes the numbers as scene-linear",
         kFinishedPicture, said.color.name, said.rule, name);
 }
 
@@ -292,7 +288,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         ImageBuf source = reader.read_all();
         if (turns) source = upright(std::move(source));
         ImageBuf result;
-        run(tonemapper, result, source, nthreads);
+        tonemapper.run(result, source, {}, nthreads);
         give_date(result.specmod(), in);
         if (write.says_how) say_how(result.specmod(), tonemapper.options(), read.resize);
         write_image_atomically(result, out, write);
@@ -311,8 +307,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         .run_all();
 }
 
-void check_overwriting(const std::string& command, const std::vector<FrameFiles>& files,
-                       bool is_in_place) {
+void check_overwriting(const std::vector<FrameFiles>& files, bool is_in_place) {
     using Identity = std::pair<dev_t, ino_t>;
     const auto identity_of = [](const std::string& path) -> std::optional<Identity> {
         struct stat file {};
@@ -330,14 +325,15 @@ void check_overwriting(const std::string& command, const std::vector<FrameFiles>
         const bool is_own = found->second->out == file.out;
         if (is_own && is_in_place) continue;
         throw Error(
-            fmt::format("{}: output is {}, the same file as the input {}; expected another file{}",
-                        command, file.out, found->second->in, is_own ? ", or --in-place" : ""));
+            Problem{.value = fmt::format("output is {}, the same file as the input {}", file.out,
+                                         found->second->in),
+                    .expected = is_own ? "another file, or <<in_place=yes>>" : "another file"});
     }
     std::vector<std::string> outs;
     outs.reserve(files.size());
     for (const FrameFiles& file : files)
         outs.push_back(file.out);
-    require_separate_files(command, outs);
+    require_separate_files(outs);
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,

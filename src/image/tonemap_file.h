@@ -38,11 +38,9 @@ inline constexpr std::string_view kFinishedPicture = "finished for a display (";
 [[nodiscard]] TONEWRIGHT_API std::string finished_warning(const OIIO::ImageSpec& spec,
                                                           const TonemapOptions& options);
 
-/// Checks that no output replaces an input, also through links. With --in-place, a picture may
-/// replace itself, but never another.
-/// @param command  its name, for the message
+/// Checks that no output replaces an input, also through links. In place, a picture may replace
+/// itself, but never another.
 /// @throws Error
-TONEWRIGHT_API void check_overwriting(const std::string& command,
-                                      const std::vector<FrameFiles>& files, bool is_in_place);
+TONEWRIGHT_API void check_overwriting(const std::vector<FrameFiles>& files, bool is_in_place);
 
 TONEWRIGHT_NAMESPACE_END

@@ -118,7 +118,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "trilinear",
          "import the .cube; Volume > Tonemapping > Mode External > Lookup Texture. Its size must "
          "be "
-         "the HDRP Asset's Grading LUT Size, 32 unless changed: --size",
+         "the HDRP Asset's Grading LUT Size, 32 unless changed: <<size>>",
          "",
          false,
          "",
@@ -127,13 +127,14 @@ const std::vector<LutApplication>& all_lut_applications() {
         // green; Unity's textures have v 0 at the bottom.
         {"unity_urp", "Unity URP", LutFormat::strip_up, 32, "srgb", "srgb", 8, "trilinear",
          "import with sRGB off, no mip maps, no compression; Volume > Color Lookup > Lookup "
-         "Texture. Its height must be the URP Asset's Grading LUT Size, 32 unless changed: --size. "
+         "Texture. Its height must be the URP Asset's Grading LUT Size, 32 unless changed: "
+         "<<size>>. "
          "Works on the displayed picture",
          ""},
         {"godot", "Godot", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
          "import as Texture3D, Slices Horizontal as many as the picture is high, 32 unless "
          "changed: "
-         "--size; Environment > Adjustments > Color "
+         "<<size>>; Environment > Adjustments > Color "
          "Correction: works on the displayed picture",
          ""},
         {"obs",
@@ -242,8 +243,10 @@ const LutApplication& find_lut_application(std::string_view id) {
         ids.push_back(host.id);
         choices.push_back({host.id, {host.title}});
     }
-    throw Error("bake: application is " + std::string(id) + "; expected " + join_choices(ids) +
-                did_you_mean(id, choices));
+    throw Error({.parameter = "application",
+                 .value = std::string(id),
+                 .expected = join_choices(ids),
+                 .suggestion = suggested_names(id, choices)});
 }
 
 bool reads_chains(const LutApplication& application, LutFormat format) {

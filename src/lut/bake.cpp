@@ -123,11 +123,13 @@ BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
                   std::optional<double> max_error, int largest_size) {
     if (!max_error) return complete(bake_size(request, nodes, trilinear), request, trilinear);
     if (request.size) {
-        throw Error("bake: size is " + std::to_string(*request.size) +
-                    "; expected no size with --max-error");
+        throw Error({.parameter = "size",
+                     .value = std::to_string(*request.size),
+                     .expected = "no size with <<max_error>>"});
     }
     if (!(*max_error > 0))
-        throw Error("bake: max error is " + shortest(*max_error) + "; expected above 0");
+        throw Error(
+            {.parameter = "max_error", .value = shortest(*max_error), .expected = "above 0"});
     // A 1D table chooses its own number of entries.
     BakedLut baked = bake_size(request, nodes, trilinear);
     if (baked.lut.dimension == 1 && baked.error.photographs.p999 <= *max_error) return baked;
@@ -141,10 +143,11 @@ BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
                 return complete(std::move(baked), sized, trilinear);
         }
     }
-    throw Error(
-        fmt::format("bake: max error is {}; expected at least {}, which {} {} has on photographs",
-                    shortest(*max_error), rounded_up(baked.error.photographs.p999),
-                    name_of(request.format), baked.lut.size));
+    throw Error({.parameter = "max_error",
+                 .value = shortest(*max_error),
+                 .expected = fmt::format("at least {}, which {} {} has on photographs",
+                                         rounded_up(baked.error.photographs.p999),
+                                         name_of(request.format), baked.lut.size)});
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -24,7 +24,7 @@ bool has_shaper(LutFormat format) {
 }
 
 LutFormat parse_lut_format(std::string_view text) {
-    return static_cast<LutFormat>(find_choice("bake: format", text, lut_format_names()));
+    return static_cast<LutFormat>(find_choice("format", text, lut_format_names()));
 }
 
 TONEWRIGHT_NAMESPACE_END

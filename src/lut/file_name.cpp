@@ -70,22 +70,23 @@ LutFormat lut_format_of_file(const std::string& path, std::optional<LutFormat> f
                 ? fmt::format("{} reads {}", application->title, name_of(*format))
                 : fmt::format("the format is {}", name_of(*format));
         throw Error(
-            fmt::format("bake: file is {}; expected {}: {}", path, join_choices(own), reason));
+            {.parameter = "file", .value = path, .expected = join_choices(own) + ": " + reason});
     }
     if (has(extensions_of(LutFormat::hald), extension)) {
         throw Error(
-            fmt::format("bake: file is {}; expected --format hald, strip or strip_up with a "
-                        "picture, or --for",
-                        path));
+            {.parameter = "file",
+             .value = path,
+             .expected = "<<format=hald>>, strip or strip_up with a picture, or <<application>>"});
     }
     // If two formats share an extension, the first one is the default.
     for (std::size_t i = 0; i < extensions().size(); ++i) {
         if (has(extensions()[i], extension)) return static_cast<LutFormat>(i);
     }
     const std::vector<std::string> known = known_extensions();
-    throw Error(fmt::format("bake: file is {}; expected a name that ends in {}", path,
-                            join_choices(known)) +
-                did_you_mean(extension, known));
+    throw Error({.parameter = "file",
+                 .value = path,
+                 .expected = "a name that ends in " + join_choices(known),
+                 .suggestion = suggested_names(extension, known)});
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -78,7 +78,7 @@ std::string write_icc(const std::vector<float>& nodes, int size, int version,
     std::string message;
     const IccContext context = make_icc_context(message);
     const auto require = [&](bool ok) {
-        if (!ok) throw Error("bake: ICC profile: " + (message.empty() ? "cannot write" : message));
+        if (!ok) throw Error("ICC profile: " + (message.empty() ? "cannot write" : message));
     };
     const IccOwned<void> profile(cmsCreateProfilePlaceholder(context.get()));
     require(profile != nullptr);

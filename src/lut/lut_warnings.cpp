@@ -17,7 +17,7 @@ std::string domain_warning(const std::string& file, const LutRequest& request) {
     if (input.scene_lo == 0 && input.scene_hi >= 1) return {};
     return fmt::format(
         "{} has the domain {} to {}, and ffmpeg reads one from 0 to at least 1; use "
-        "--input-encoding linear:0:{}, or --format clf or spi1d for OpenColorIO",
+        "<<input_encoding=linear:0:{}>>, or <<format=clf>> or spi1d for OpenColorIO",
         file, shortest(input.scene_lo), shortest(input.scene_hi),
         shortest(std::fmax(1, input.scene_hi)));
 }
@@ -28,7 +28,7 @@ std::string remedy(const LutRequest& request, const BakedLut& baked, const LutAp
     if (!host) {
         for (const InputSpace& space : all_input_spaces()) {
             if (space.primaries == view.op.op->working && space.id != view.input)
-                return "take input of the operator's own primaries: --input " + space.id;
+                return "take input of the operator's own primaries: <<input=" + space.id + ">>";
         }
     }
     if (host && reads_chains(*host, LutFormat::clf) && !reads_chains(*host, request.format))
@@ -36,7 +36,7 @@ std::string remedy(const LutRequest& request, const BakedLut& baked, const LutAp
     // Pictures of LUTs have the sizes that their application wants.
     if (baked.lut.size < 65 && !is_picture_format(request.format) &&
         (!host || host->largest_size >= 65))
-        return "take more nodes: --size 65";
+        return "take more nodes: <<size=65>>";
     return {};
 }
 

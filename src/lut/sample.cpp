@@ -74,22 +74,20 @@ void check_bits(const LutRequest& request, const FormatTraits& traits) {
         if (bits == bits_of(request)) return;
         known.push_back(std::to_string(bits));
     }
-    throw Error("bake: depth is " + std::to_string(bits_of(request)) + "; expected " +
-                join_choices(known) + " for " + traits.name);
+    throw Error({.parameter = "depth",
+                 .value = std::to_string(bits_of(request)),
+                 .expected = join_choices(known) + " for " + traits.name});
+}
+
+[[noreturn]] void refuse_size(int size, const std::string& expected) {
+    throw Error({.parameter = "size", .value = std::to_string(size), .expected = expected});
 }
 
 int checked_size(const LutRequest& request, int fallback, int lo, int hi) {
     const int size = request.size.value_or(fallback);
-    if (size < lo || size > hi) {
-        throw Error("bake: size is " + std::to_string(size) + "; expected [" + std::to_string(lo) +
-                    ", " + std::to_string(hi) + "]");
-    }
+    if (size < lo || size > hi)
+        refuse_size(size, "[" + std::to_string(lo) + ", " + std::to_string(hi) + "]");
     return size;
-}
-
-std::string at_most_one_dimension(const LutRequest& request) {
-    return "bake: " + request.view.op.label + " mixes channels (or " + request.view.input +
-           " is not its own space)";
 }
 
 /// One table per channel: the three curves may differ (a look's slope).
@@ -110,49 +108,58 @@ Lut sample_lut(const LutRequest& request) {
     const bool per_channel = is_per_channel(build_view(request.view));
     const FormatTraits& traits = traits_of(request.format);
     if (request.dimension == LutDimension::three && !traits.has_3d) {
-        throw Error(std::string("bake: format is ") + traits.name +
-                    "; expected a 3D format (cube, clf, ctf, spi3d, csp, resolve_cube, 3dl, lut, "
-                    "icc, hald, "
-                    "strip, strip_up, raw) with --3d");
+        throw Error({.parameter = "format",
+                     .value = traits.name,
+                     .expected = "a 3D format (cube, clf, ctf, spi3d, csp, resolve_cube, 3dl, lut, "
+                                 "icc, hald, strip, strip_up, raw) with <<dimension=3d>>"});
     }
     if (request.dimension == LutDimension::one && !traits.has_1d) {
-        throw Error(std::string("bake: format is ") + traits.name +
-                    "; expected a 1D format (cube, clf, ctf, spi1d) with --1d");
+        throw Error({.parameter = "format",
+                     .value = traits.name,
+                     .expected = "a 1D format (cube, clf, ctf, spi1d) with <<dimension=1d>>"});
     }
     const bool one =
         traits.has_1d && (!traits.has_3d || request.dimension == LutDimension::one ||
                           (request.dimension == LutDimension::automatic && per_channel));
     check_bits(request, traits);
     if (request.decimals && request.format != LutFormat::cube) {
-        throw Error("bake: decimals is " + std::to_string(*request.decimals) +
-                    "; expected none for " + traits.name + "; only cube has decimals");
+        throw Error(
+            {.parameter = "decimals",
+             .value = std::to_string(*request.decimals),
+             .expected = std::string("none for ") + traits.name + "; only cube has decimals"});
     }
     if (request.decimals && (*request.decimals < 3 || *request.decimals > 9)) {
-        throw Error("bake: decimals is " + std::to_string(*request.decimals) + "; expected [3, 9]");
+        throw Error({.parameter = "decimals",
+                     .value = std::to_string(*request.decimals),
+                     .expected = "[3, 9]"});
     }
     // Readers support at most 65536 equal scene-linear steps, which are short enough up to
     // ACEScct's 222.9.
     constexpr double kBrightestShaper = 223;
     if (has_shaper(request.format) && request.encoding.scene_hi > kBrightestShaper) {
-        throw Error("input encoding is " + request.encoding.id + ", up to " +
-                    shortest(request.encoding.scene_hi) + "; expected up to 223 for " +
-                    traits.name);
+        throw Error(
+            {.parameter = "input_encoding",
+             .value = request.encoding.id + ", up to " + shortest(request.encoding.scene_hi),
+             .expected = std::string("up to 223 for ") + traits.name});
     }
     if (one && !per_channel) {
-        throw Error(at_most_one_dimension(request) + "; expected a 3D table");
+        throw Error(Problem{.value = request.view.op.label + " mixes channels (or " +
+                                     request.view.input + " is not its own space)",
+                            .expected = "a 3D table"});
     }
     if (!one && request.encoding.is_linear) {
-        throw Error("input encoding is " + request.encoding.id +
-                    "; expected another for a 3D table, such as acescct or log2" +
-                    " (a 3D LUT of linear input clips at its end and bands in the shadows)");
+        throw Error({.parameter = "input_encoding",
+                     .value = request.encoding.id,
+                     .expected =
+                         "another for a 3D table, such as acescct or log2 (a 3D LUT of linear "
+                         "input clips at its end and bands in the shadows)"});
     }
     const bool has_half_domain =
         request.format == LutFormat::clf || request.format == LutFormat::ctf;
     if (one && has_half_domain && request.encoding.is_linear) {
         if (request.size)
-            throw Error("bake: size is " + std::to_string(*request.size) +
-                        "; expected none, a half-domain " + std::string(traits.name) +
-                        " has 65536 entries");
+            refuse_size(*request.size,
+                        "none, a half-domain " + std::string(traits.name) + " has 65536 entries");
         return sample_half_curve(request);
     }
 
@@ -166,13 +173,10 @@ Lut sample_lut(const LutRequest& request) {
                    : checked_size(request, takes_grid ? grid : traits.default_size, traits.smallest,
                                   traits.largest);
     if (!one && request.format == LutFormat::threedl && lut.size != 17 && lut.size != 33 &&
-        lut.size != 65) {
-        throw Error("bake: size is " + std::to_string(lut.size) +
-                    "; expected 17, 33 or 65 for 3dl");
-    }
+        lut.size != 65)
+        refuse_size(lut.size, "17, 33 or 65 for 3dl");
     if (request.format == LutFormat::hald && !is_square(lut.size)) {
-        throw Error("bake: size is " + std::to_string(lut.size) +
-                    "; expected a square for a Hald CLUT: 16, 25, 36, 49, 64, 81, 100, 121 or 144");
+        refuse_size(lut.size, "a square for a Hald CLUT: 16, 25, 36, 49, 64, 81, 100, 121 or 144");
     }
     const auto n = static_cast<std::size_t>(lut.size);
     std::vector<double> axis(n);
@@ -203,7 +207,7 @@ Lut sample_lut(const LutRequest& request) {
 Lut fit_lut(const LutRequest& request, const Lut& sampled, double photograph_share,
             const std::function<void(Lut&)>& constrain) {
     if (sampled.dimension != 3)
-        throw Error("bake: a 1D table has no grid to fit; expected a 3D LUT");
+        throw Error(Problem{.value = "a 1D table has no grid to fit", .expected = "a 3D LUT"});
     CubeProblem problem;
     problem.edge = sampled.size;
     problem.axis = {request.encoding.encode, request.encoding.decode, request.encoding.scene_hi};

@@ -92,8 +92,8 @@ TableFile read_device_link(const std::string& path, const std::string& bytes) {
 }
 
 TableFile read_own(const std::string& path, const std::string& extension) {
-    const std::string bytes = read_file(path, kLargestLutFile, [&](const std::string& reason) {
-        throw FileError("read: " + path + ": " + reason);
+    const std::string bytes = read_file(path, kLargestLutFile, [&](const Problem& why) {
+        throw FileError(within("read: " + path, why));
     });
     TableFile table;
     if (is_parsed_here(extension)) {
@@ -244,7 +244,7 @@ TableFile table_file_of(const Lut& lut, const std::string& path) {
             table.stages.emplace_back(lut.is_half_domain ? half_tables_of(rows) : tables_of(rows));
         }
     } catch (const Error& e) {
-        throw FileError("read: " + path + ": " + e.what());
+        throw FileError(within("read: " + path, e.problem()));
     }
     describe_table(table, path, "");
     return table;

@@ -120,8 +120,8 @@ std::optional<AddedRecord> AddedRecord::find(const std::string& config,
 
 AddedRecord AddedRecord::read(const std::string& config, const std::string& config_text) {
     if (std::optional<AddedRecord> record = find(config, config_text)) return *std::move(record);
-    throw FileError("config: " + config + ": has no record of an earlier --into; " +
-                    file_of(config) + " is missing");
+    throw FileError(config + ": has no record of what was added to it; " + file_of(config) +
+                    " is missing");
 }
 
 std::string AddedRecord::mark_of(const std::string& config_text) {
@@ -180,7 +180,7 @@ std::string AddedRecord::without(std::string text, const std::string& config) co
         const std::size_t at = find_piece(text, *piece);
         if (at == std::string::npos) {
             throw FileError(
-                fmt::format("config: {}: entries that --into added were changed since: {}; "
+                fmt::format("{}: entries that were added to it were changed since: {}; "
                             "expected them as in {}",
                             config, printable(trimmed(piece->text)), path_of(config)));
         }

@@ -179,15 +179,18 @@ void check_config_options(const ConfigOptions& options) {
     std::set<std::string> profiles;
     for (const std::string& profile : options.profiles) {
         if (profile != "2.0" && profile != "2.1" && profile != "2.5")
-            throw Error("config: profile is " + profile + "; expected 2.0, 2.1 or 2.5");
+            throw Error({.parameter = "profile", .value = profile, .expected = "2.0, 2.1 or 2.5"});
         if (!profiles.insert(profile).second)
-            throw Error("config: profile " + profile + " appears twice; expected once");
+            throw Error(
+                {.parameter = "profile", .value = profile + " twice", .expected = "it once"});
     }
     if (find_input_space(options.working).is_camera) {
-        throw Error("config: working space is " + options.working +
-                    "; expected one of the config: lin_rec709, lin_ap1, ...");
+        throw Error({.parameter = "working",
+                     .value = options.working,
+                     .expected = "one of the config: lin_rec709, lin_ap1, ..."});
     }
-    if (profiles.empty()) throw Error("config: no profile; expected 2.0, 2.1 or 2.5");
+    if (profiles.empty())
+        throw Error(Problem{.value = "no profile", .expected = "2.0, 2.1 or 2.5"});
     (void)make_config_model(options);
 }
 
@@ -204,7 +207,7 @@ std::vector<std::string> config_warnings(const ConfigOptions& options) {
     }
     if (!views.empty()) {
         texts.push_back(fmt::format(
-            "a config cannot measure pictures: {} (--operator ID:PARAMETER=VALUE changes it)",
+            "a config cannot measure pictures: {} (<<custom=ID:PARAMETER=VALUE>> changes it)",
             fmt::join(views, "; ")));
     }
     return texts;

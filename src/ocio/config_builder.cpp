@@ -203,7 +203,7 @@ const InputSpace& space_of(const Primaries& primaries) {
     for (const InputSpace& space : all_input_spaces()) {
         if (space.primaries == primaries) return space;
     }
-    throw Error("config: no space has the primaries " + std::string(primaries.name));
+    throw Error(Problem{.value = "no space has the primaries " + std::string(primaries.name)});
 }
 
 /// Null for identities.

@@ -88,7 +88,7 @@ std::vector<std::string> folders_to_link(const ConfigLocation& location,
             (type == fs::file_type::directory && !moved.empty() && has_only(folder, moved));
         if (!is_free) {
             throw FileError(fmt::format(
-                "config: {} is a link to {}, and OpenColorIO looks for tables beside the link: {} "
+                "{} is a link to {}, and OpenColorIO looks for tables beside the link: {} "
                 "is there; expected nothing, or a link to {}",
                 link, location.file, folder.string(), tables.string()));
         }

@@ -75,7 +75,7 @@ auto reading(const std::string& path, const Run& run) {
     } catch (const std::system_error&) {  // no thread, or a file that cannot be read
         throw;
     } catch (const std::exception& e) {
-        throw FileError("config: " + path + ": " + one_line(e.what()));
+        throw FileError(path + ": " + one_line(e.what()));
     }
 }
 
@@ -116,7 +116,7 @@ std::vector<HostDisplay> match_displays(const AnyConfig& any, const std::string&
             if (space == OCIO::OCIO_VIEW_USE_DISPLAY_NAME) space = name;
             const auto refuse = [&](const std::string& reason) {
                 throw FileError(
-                    fmt::format("config: {}: view {} on display {}: {}", path, view, name, reason));
+                    fmt::format("{}: view {} on display {}: {}", path, view, name, reason));
             };
             const OCIO::ConstColorSpaceRcPtr shown = config->getColorSpace(space.c_str());
             if (!shown)
@@ -133,8 +133,10 @@ std::vector<HostDisplay> match_displays(const AnyConfig& any, const std::string&
     }
     for (const std::string& name : wanted) {
         if (std::find(names.begin(), names.end(), name) == names.end()) {
-            throw Error("config: display is " + name + "; expected " + join_choices(names) +
-                        did_you_mean(name, names));
+            throw Error({.parameter = "displays",
+                         .value = name,
+                         .expected = join_choices(names),
+                         .suggestion = suggested_names(name, names)});
         }
     }
     return matched;
@@ -168,18 +170,18 @@ OCIO::ConstColorSpaceRcPtr interchange_space(const AnyConfig& any, const std::st
         if (lowercase(config->getRoleName(i)) == role) name = config->getRoleColorSpace(i);
     }
     if (!name) {
-        throw FileError("config: " + path + " has no role " + role +
+        throw FileError(path + " has no role " + role +
                         "; expected both interchange roles, which define its color spaces");
     }
     OCIO::ConstColorSpaceRcPtr space = config->getColorSpace(name);
     if (!space || space->isData()) {
-        throw FileError(fmt::format(
-            "config: {}: role {} is {}, which is {}; expected {}", path, role, one_line(name),
-            space ? "a data space" : "no color space of the config", expected));
+        throw FileError(
+            fmt::format("{}: role {} is {}, which is {}; expected {}", path, role, one_line(name),
+                        space ? "a data space" : "no color space of the config", expected));
     }
     if (is_unread(any, std::string("color space ") + space->getName())) {
         throw FileError(fmt::format(
-            "config: {}: role {} is {}, whose transform OpenColorIO {} does not know; expected one "
+            "{}: role {} is {}, whose transform OpenColorIO {} does not know; expected one "
             "of profile {}",
             path, role, one_line(name), OCIO::GetVersion(), any.newer->newest));
     }
@@ -230,7 +232,7 @@ void require_valid(const OCIO::Config& config, const std::string& what) {
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& e) {
-        throw FileError("config: OpenColorIO refuses " + what + ": " + one_line(e.what()));
+        throw FileError("OpenColorIO refuses " + what + ": " + one_line(e.what()));
     }
 }
 
@@ -246,8 +248,7 @@ OCIO::ConfigRcPtr check_result(const std::string& path, const std::string& writt
         const bool is_same =
             it != after.end() && it->second.size() == picture.size() &&
             std::memcmp(it->second.data(), picture.data(), picture.size() * sizeof(float)) == 0;
-        if (!is_same)
-            throw FileError(fmt::format("config: the result changes {} of {}", name, path));
+        if (!is_same) throw FileError(fmt::format("the result changes {} of {}", name, path));
     }
     return made;
 }
@@ -425,7 +426,7 @@ ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
     const std::vector<HostDisplay> hosts = match_displays(any, path, options.displays);
     if (hosts.empty()) {
         throw FileError(
-            "config: " + path +
+            path +
             " has no display that Tonewright knows with a view transform; expected sRGB, Display "
             "P3, Rec.1886, Rec.2020, 2.2, PQ or HLG");
     }
@@ -437,8 +438,8 @@ ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
 
     // Never replace existing entries.
     const auto refuse = [&](const std::string& what, const std::string& name) {
-        throw Error("config: " + path + " has " + what + " " + name +
-                    " already; expected another name (--operator ID --name NAME)");
+        throw Error(Problem{.value = path + " has " + what + " " + name + " already",
+                            .expected = "another name (<<custom=ID>> <<name=NAME>>)"});
     };
     for (const auto& look : model.looks) {
         if (config->getLook(look.name.c_str())) refuse("a look", look.name);
@@ -566,7 +567,7 @@ ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
                     constexpr double kAnother = 0.02;
                     if (stats.mean > kAnother + bounds.at(view.name + host.ours->id)) {
                         throw FileError(
-                            fmt::format("config: view {} on {} would differ from the reference by "
+                            fmt::format("view {} on {} would differ from the reference by "
                                         "{:.2g} on average; expected at "
                                         "most 0.02 more than its bound",
                                         name, host.name, stats.mean));
@@ -604,8 +605,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
         } catch (const FileError&) {
             throw;
         } catch (const Error& e) {  // not the caller's options, but those of the record
-            throw FileError(
-                fmt::format("{} (from {})", e.what(), AddedRecord::path_of(earlier.config)));
+            throw FileError(within(AddedRecord::path_of(earlier.config), e.problem()));
         }
     });
 }

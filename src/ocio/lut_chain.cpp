@@ -25,16 +25,20 @@ namespace {
 void check(const LutRequest& request, LutNodes nodes) {
     const std::string format = name_of(request.format);
     if (request.decimals)
-        throw Error(
-            fmt::format("bake: decimals is {}; expected none for {}; only cube has decimals",
-                        *request.decimals, format));
+        throw Error({.parameter = "decimals",
+                     .value = fmt::to_string(*request.decimals),
+                     .expected = fmt::format("none for {}; only cube has decimals", format)});
     if (request.bits.value_or(32) != 32)
-        throw Error(fmt::format("bake: depth is {}; expected 32 for {}", *request.bits, format));
+        throw Error({.parameter = "depth",
+                     .value = fmt::to_string(*request.bits),
+                     .expected = "32 for " + format});
     if (request.size && (*request.size < 17 || *request.size > 129))
-        throw Error(fmt::format("bake: size is {}; expected [17, 129]", *request.size));
-    if (nodes == LutNodes::smooth)
         throw Error(
-            "bake: nodes is smooth; expected auto, sampled or fitted for scene-linear input");
+            {.parameter = "size", .value = fmt::to_string(*request.size), .expected = "[17, 129]"});
+    if (nodes == LutNodes::smooth)
+        throw Error({.parameter = "nodes",
+                     .value = "smooth",
+                     .expected = "auto, sampled or fitted for scene-linear input"});
 }
 
 Lowered lower(const LutRequest& request, LutNodes nodes) {
@@ -155,9 +159,10 @@ LutChain make_lut_chain(const LutRequest& request, LutNodes nodes) {
     const Lowered lowered = lower(request, nodes);
     const bool is_for_both = fits_clf(lowered.ops);
     if (request.format == LutFormat::clf && !is_for_both) {
-        throw Error(fmt::format(
-            "bake: format is clf; expected ctf, because clf lacks an operation of {}: {}",
-            request.view.op.label, lowered.summary));
+        throw Error({.parameter = "format",
+                     .value = "clf",
+                     .expected = fmt::format("ctf, because clf lacks an operation of {}: {}",
+                                             request.view.op.label, lowered.summary)});
     }
     const LutError error = measure(request.view, lowered);
     return {write(request, lowered, error), error, lowered.summary, is_for_both};

@@ -209,9 +209,8 @@ OcioCpu make_cpu(const std::string& path, const std::string& name, OCIO::GroupTr
 std::string checked_bytes(const std::string& path) {
     require_regular_file(path);
     check_extension(path);
-    return read_file(path, kLargestLutFile, [&](const std::string& reason) {
-        throw FileError("read: " + path + ": " + reason);
-    });
+    return read_file(path, kLargestLutFile,
+                     [&](const Problem& why) { throw FileError(within("read: " + path, why)); });
 }
 
 }  // namespace

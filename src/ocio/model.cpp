@@ -162,12 +162,13 @@ void check_names(const ConfigModel& model) {
         taken[lowercase(role)] = "role " + role;
     const auto claim = [&](const std::string& name, const std::string& owner) {
         if (name.size() > 63) {
-            throw Error("config: name is " + name + "; expected at most 63 bytes");
+            throw Error({.parameter = "name", .value = name, .expected = "at most 63 bytes"});
         }
         const auto [it, is_new] = taken.emplace(lowercase(name), owner);
         if (!is_new) {
-            throw Error("config: name is " + name + " for " + owner + "; expected a name that " +
-                        it->second + " does not have");
+            throw Error({.parameter = "name",
+                         .value = name + " for " + owner,
+                         .expected = "a name that " + it->second + " does not have"});
         }
     };
     for (const Space& space : model.spaces) {
@@ -178,9 +179,10 @@ void check_names(const ConfigModel& model) {
     std::set<std::string> views = {lowercase(kUntonemappedView), lowercase(kRawView)};
     for (const auto& view : model.views) {
         if (view.name.size() > 63)
-            throw Error("config: view is " + view.name + "; expected at most 63 bytes");
+            throw Error(Problem{.value = "view is " + view.name, .expected = "at most 63 bytes"});
         if (!views.insert(lowercase(view.name)).second) {
-            throw Error("config: view is " + view.name + "; expected a name no other operator has");
+            throw Error(Problem{.value = "view is " + view.name,
+                                .expected = "a name no other operator has"});
         }
     }
     for (const auto& [role, name] : model.roles) {
@@ -188,8 +190,8 @@ void check_names(const ConfigModel& model) {
         const bool known = std::any_of(model.spaces.begin(), model.spaces.end(),
                                        [&](const Space& s) { return s.name == wanted; });
         if (!known)
-            throw Error(
-                fmt::format("config: role {} is {}; expected a space of the config", role, name));
+            throw Error(Problem{.value = fmt::format("role {} is {}", role, name),
+                                .expected = "a space of the config"});
     }
 }
 
@@ -403,9 +405,9 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
             if (other.name != view.name) continue;
             if (other.op.op->name() == view.op.op->name()) return;
             throw Error(
-                fmt::format("config: view is {}, of {} and of {}; expected names of views "
-                            "that differ (`view =` in a .tone file)",
-                            view.name, other.op.op->name(), view.op.op->name()));
+                Problem{.value = fmt::format("view is {}, of {} and of {}", view.name,
+                                             other.op.op->name(), view.op.op->name()),
+                        .expected = "names of views that differ (`view =` in a .tone file)"});
         }
         views.push_back(std::move(view));
     };
@@ -435,10 +437,11 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
         } catch (const FileError&) {
             throw;
         } catch (const Error& e) {
-            throw Error(
-                fmt::format("config: view is {}; expected standard, all, none, or the name of a "
-                            "view or an operator ({})",
-                            wanted, e.what()));
+            throw Error({.parameter = "views",
+                         .value = wanted,
+                         .expected = fmt::format("standard, all, none, or the name of a view or an "
+                                                 "operator ({})",
+                                                 e.text())});
         }
         ConfigModel::View view = view_of(*op.op, op.params.look());
         for (const Preset& preset : op.op->presets) {
@@ -450,10 +453,12 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
     for (const auto& custom : options.custom) {
         const ResolvedOperator op = resolve_operator(custom.op, {}, {}, options.others);
         if (custom.name.empty())
-            throw Error("config: the view of " + custom.op + " has no name; expected one");
+            throw Error(
+                Problem{.value = "the view of " + custom.op + " has no name", .expected = "one"});
         views.push_back({custom.name, op, description_of(*op.op) + " As " + op.label + "."});
     }
-    if (views.empty()) throw Error("config: views are none; expected --operator beside it");
+    if (views.empty())
+        throw Error({.parameter = "views", .value = "none", .expected = "<<custom>> beside it"});
     const std::size_t count = views.size();
     for (const double stops : options.exposure_stops) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -499,8 +504,10 @@ std::vector<ConfigModel::Look> choose_looks(const ConfigOptions& options,
             std::vector<std::string> names = {"none"};
             for (const auto& look : all)
                 names.push_back(look.name);
-            throw Error("config: look is " + wanted + "; expected " + join_choices(names) +
-                        did_you_mean(wanted, names));
+            throw Error({.parameter = "looks",
+                         .value = wanted,
+                         .expected = join_choices(names),
+                         .suggestion = suggested_names(wanted, names)});
         }
         chosen.push_back(*found);
     }

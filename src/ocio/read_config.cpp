@@ -140,9 +140,8 @@ OCIO::ConfigRcPtr editable_copy(const OCIO::Config& config) {
 }
 
 std::string read_config_text(const std::string& path) {
-    return read_file(path, kMostBytes, [&](const std::string& reason) {
-        throw FileError("read: " + path + ": " + reason);
-    });
+    return read_file(path, kMostBytes,
+                     [&](const Problem& why) { throw FileError(within("read: " + path, why)); });
 }
 
 OCIO::ConfigRcPtr read_config(const std::string& path) {

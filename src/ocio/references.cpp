@@ -156,14 +156,14 @@ class ReferenceWalk {
             const std::string file =
                 config_.getCurrentContext()->resolveFileLocation(source.c_str());
             require_regular_file(file);
-            const auto ignore = [](const std::string& reason) {
-                throw OCIO::Exception(reason.c_str());
+            const auto ignore = [](const Problem& why) {
+                throw OCIO::Exception(why.value.c_str());
             };
             check_lut_words(file, read_file(file, kLargestLutFile, ignore));
         } catch (const OCIO::Exception&) {
             return;  // missing or unreadable: OpenColorIO reports it at its use
         } catch (const FileError& e) {
-            throw FileError(fmt::format("{} ({} uses it as a LUT)", e.what(), path_));
+            throw FileError(fmt::format("{} ({} uses it as a LUT)", e.text(), path_));
         }
     }
 

@@ -66,14 +66,22 @@ bool parse_number(std::string_view s, double& value) {
 constexpr double kPqPeak = 10000;  // SMPTE ST 2084
 constexpr double kHlgPeak = 1000;  // ITU-R BT.2100-2, the display with a system gamma of 1.2
 
+[[noreturn]] void refuse(std::string_view text, const std::string& expected,
+                         const std::string& suggestion = {}) {
+    throw Error({.parameter = "input_encoding",
+                 .value = std::string(text),
+                 .expected = expected,
+                 .suggestion = suggestion});
+}
+
 /// "name", or "name:WHITE".
 double parse_white(std::string_view text, std::string_view name, double peak) {
     const std::size_t colon = text.find(':');
     if (colon == std::string_view::npos) return kReferenceWhite;
     double white = 0;
     if (!parse_number(text.substr(colon + 1), white) || !(white > 0) || white > peak) {
-        throw Error("input encoding is " + std::string(text) + "; expected " + std::string(name) +
-                    ":WHITE, the cd/m2 of scene-linear 1.0 in (0, " + shortest(peak) + "]");
+        refuse(text, std::string(name) + ":WHITE, the cd/m2 of scene-linear 1.0 in (0, " +
+                         shortest(peak) + "]");
     }
     return white;
 }
@@ -92,8 +100,7 @@ Range parse_range(std::string_view text, std::string_view name, Range fallback) 
     Range range{};
     if (colon == std::string_view::npos || !parse_number(rest.substr(0, colon), range.lo) ||
         !parse_number(rest.substr(colon + 1), range.hi) || !(range.lo < range.hi)) {
-        throw Error("input encoding is " + std::string(text) + "; expected " + std::string(name) +
-                    ":LO:HI with numbers LO < HI");
+        refuse(text, std::string(name) + ":LO:HI with numbers LO < HI");
     }
     return range;
 }
@@ -154,7 +161,7 @@ InputEncoding parse_input_encoding(std::string_view text) {
     if (name == "log2") {
         const Range stops = parse_range(text, name, {-10, 6.5});
         if (stops.lo < -64 || stops.hi > 64) {
-            throw Error("input encoding is " + std::string(text) + "; expected [-64, 64] stops");
+            refuse(text, "[-64, 64] stops");
         }
         const double lowest = std::log2(0.18) + stops.lo;
         const double span = stops.hi - stops.lo;
@@ -184,8 +191,7 @@ InputEncoding parse_input_encoding(std::string_view text) {
         choices.push_back({fixed.id, {fixed.title}});
     for (const char* other : kEncodingsWithNumbers)
         choices.push_back({other});
-    throw Error("input encoding is " + std::string(text) + "; expected " +
-                join_choices(input_encoding_names()) + did_you_mean(name, choices));
+    refuse(text, join_choices(input_encoding_names()), suggested_names(name, choices));
 }
 
 TONEWRIGHT_NAMESPACE_END

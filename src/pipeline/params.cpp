@@ -54,7 +54,7 @@ Settings in_own_words(const Operator& op, const Settings& settings) {
         const ParameterSpec& spec = find_parameter(op, key);
         std::string value = text;
         if (spec.kind == ParameterSpec::Kind::choice)
-            value = spec.choices[find_choice(op.id + ": " + spec.name, text, spec.choices)];
+            value = spec.choices[find_choice(spec.name, text, spec.choices, op.id)];
         const auto [known, is_new] = result.emplace(spec.name, value);
         if (!is_new && known->second != value) {
             throw Error(op.id + ": " + spec.name + " is " + known->second + " and " + value +
@@ -271,7 +271,7 @@ ResolvedOperator resolve(const Operator& op, const Preset* preset, const Setting
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {
-        throw Error(op.id + ": " + e.what());
+        throw Error(within(op.id, e.problem()));
     }
     return resolved;
 }

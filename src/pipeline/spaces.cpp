@@ -28,7 +28,7 @@ const Item* look_up(const std::vector<Item>& items, std::string_view name) {
 }
 
 template <class Item>
-const Item& find_named(const std::vector<Item>& items, std::string_view name, const char* what,
+const Item& find_named(const std::vector<Item>& items, std::string_view name, const char* parameter,
                        const std::vector<std::string>& extra) {
     if (const Item* found = look_up(items, name)) return *found;
     std::vector<NamedChoice> all;
@@ -42,8 +42,10 @@ const Item& find_named(const std::vector<Item>& items, std::string_view name, co
         ids.push_back(other);
         all.push_back({other});
     }
-    throw Error(std::string(what) + " is " + std::string(name) + "; expected " + join_choices(ids) +
-                did_you_mean(name, all));
+    throw Error({.parameter = parameter,
+                 .value = std::string(name),
+                 .expected = join_choices(ids),
+                 .suggestion = suggested_names(name, all)});
 }
 
 Display sdr_display(std::string id, std::string title, std::vector<std::string> aliases,
@@ -385,10 +387,12 @@ const InputSpace& find_input_space(std::string_view name) {
         std::vector<std::string> ids;
         for (const InputSpace& space : all_input_spaces())
             ids.push_back(space.id);
-        throw Error("input space is " + std::string(name) + ", a color of pictures; expected " +
-                    join_choices(ids) + " (for a LUT of encoded colors: --input-encoding)");
+        throw Error(
+            {.parameter = "input",
+             .value = std::string(name) + ", a color of pictures",
+             .expected = join_choices(ids) + " (for a LUT of encoded colors: <<input_encoding>>)"});
     }
-    return find_named(all_input_spaces(), name, "input space", {});
+    return find_named(all_input_spaces(), name, "input", {});
 }
 
 SourceColor find_source_color(std::string_view name) {
@@ -402,10 +406,10 @@ SourceColor find_source_color(std::string_view name) {
         choices.push_back({source.id, source.aliases});
         choices.back().names.push_back(source.title);
     }
-    throw Error("input space is " + std::string(name) +
-                "; expected a name of `tonewright list --inputs`, such as lin_rec709, sRGB or "
-                "ACEScct" +
-                did_you_mean(name, choices));
+    throw Error({.parameter = "input",
+                 .value = std::string(name),
+                 .expected = "a name of <<list=inputs>>, such as lin_rec709, sRGB or ACEScct",
+                 .suggestion = suggested_names(name, choices)});
 }
 
 std::vector<SourceColorName> all_source_color_names() {

@@ -27,8 +27,8 @@ std::string stand_in_warning(const ResolvedOperator& op, std::string_view form,
     if (constants.empty()) return {};
     const std::string thing(form);
     return op.label + " measures each picture, which a " + thing + " cannot do; the " + thing +
-           " uses " + constants + " (--set " + constants.substr(0, constants.find(' ')) +
-           "=... changes it)";
+           " uses " + constants + " (<<settings=" + constants.substr(0, constants.find(' ')) +
+           ">> changes it)";
 }
 
 TONEWRIGHT_NAMESPACE_END

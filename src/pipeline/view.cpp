@@ -53,7 +53,7 @@ Pipeline exposed_stages(const Pipeline& decode, const Expr& factor) {
 
 InputUnits parse_input_units(std::string_view text) {
     constexpr InputUnits kUnits[] = {InputUnits::relative, InputUnits::luminance};
-    return kUnits[find_choice("input units", std::string(text), {"relative", "cd/m2"})];
+    return kUnits[find_choice("input_units", text, {"relative", "cd/m2"})];
 }
 
 SourceColor in_units(SourceColor source, InputUnits units) {
@@ -179,7 +179,7 @@ Pipeline build_inverse_view(const View& view) {
             return op.build_inverse ? op.build_inverse(view.op.params)
                                     : invert_stages(view.op.build());
         } catch (const Error& e) {
-            throw Error(op.name() + " has no inverse: " + e.what());
+            throw Error(op.name() + " has no inverse: " + e.text());
         }
     };
     Pipeline stages;

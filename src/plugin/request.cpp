@@ -32,8 +32,8 @@ bool has_extension(const std::string& name) {
 /// cannot.
 void read_request_file(const fs::path& path, Request& request) {
     constexpr std::size_t kMostBytes = 1 << 16;
-    std::istringstream file(read_file(path.string(), kMostBytes, [&](const std::string& reason) {
-        throw FileError(path.string() + ": cannot read: " + reason);
+    std::istringstream file(read_file(path.string(), kMostBytes, [&](const Problem& why) {
+        throw FileError(within(path.string() + ": cannot read", why));
     }));
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
@@ -103,8 +103,8 @@ std::string without_contents(std::string_view message, const std::vector<std::st
         }
     }
     if (path.empty()) return "op names a file that cannot be read as one of an operator";
-    if (const std::string why = why_not_readable(path); !why.empty())
-        return fmt::format("{}: cannot read: {}", path, why);
+    if (const std::optional<Problem> why = why_not_readable(path))
+        return fmt::format("{}: cannot read: {}", path, why->value);
     return fmt::format(
         "{}{}: cannot be read as the file of an operator; `tonewright list OPERATOR` says why",
         path, line.empty() ? "" : ":" + line);

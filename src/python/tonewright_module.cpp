@@ -12,12 +12,14 @@
 #include <pybind11/stl.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstddef>
 #include <exception>
 #include <new>
 #include <optional>
-#include <regex>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -61,63 +63,72 @@ std::string text_of(const py::handle& value) {
     return text;
 }
 
-/// The library's messages name commands and their options; Python has functions and arguments.
-std::string in_python(std::string message) {
-    for (const auto& [command, python] :
-         {std::pair<std::string, const char*>("`tonewright list --hosts`", "applications()"),
-          std::pair<std::string, const char*>("`tonewright list`", "operators()"),
-          std::pair<std::string, const char*>(
-              "--format hald, strip or strip_up with a picture, or --for",
-              "format=\"hald\", \"strip\" or \"strip_up\" with a picture, or host="),
-          std::pair<std::string, const char*>("--operator ID:PARAMETER=VALUE",
-                                              "custom={VIEW: \"ID:PARAMETER=VALUE\"}"),
-          std::pair<std::string, const char*>("--in-place", "in_place=True")}) {
-        for (std::size_t at = 0; (at = message.find(command)) != std::string::npos;)
-            message.replace(at, command.size(), python);
-    }
-    static const std::regex setting("--set ([a-z_]+)=\\.\\.\\.");
-    static const std::regex number("--([a-z]+) ([0-9.]+)");
-    static const std::regex name("--([a-z]+) ([a-z][a-z0-9_]*)");
-    message = std::regex_replace(message, setting, "settings={\"$1\": ...}");
-    message = std::regex_replace(message, number, "$1=$2");
-    return std::regex_replace(message, name, "$1=\"$2\"");
+bool is_number(std::string_view text) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size();
 }
+
+/// A parameter of the library as an argument of this module's functions.
+std::string argument_of(std::string_view parameter) {
+    for (const auto& [field, argument] :
+         {std::pair("application", "host"), std::pair("low_percentile", "low"),
+          std::pair("high_percentile", "high"), std::pair("pixel_type", "type")}) {
+        if (parameter == field) return argument;
+    }
+    return std::string(parameter);
+}
+
+/// Messages write parameters as arguments: `size is 3`, `size=65`.
+constexpr MessageStyle kStyle = {
+    argument_of, [](std::string_view parameter, std::string_view value) {
+        if (parameter == "task") return std::string(value == "apply" ? "tonemap()" : value);
+        if (parameter == "list")
+            return std::string(value == "operators" ? "operators()" : "`tonewright list --inputs`");
+        if (parameter == "settings") return fmt::format("settings={{\"{}\": ...}}", value);
+        if (parameter == "custom" && !value.empty())
+            return fmt::format("custom={{VIEW: \"{}\"}}", value);
+        const std::string argument = argument_of(parameter);
+        if (value == "yes") return argument + "=True";
+        if (value.empty() || is_number(value)) return fmt::format("{}={}", argument, value);
+        return fmt::format("{}=\"{}\"", argument, value);
+    }};
 
 /// A UserWarning at the line that called the package's function.
 /// @throws py::error_already_set  Python's filters make it an error.
 void warn(const std::string& text) {
     constexpr Py_ssize_t kCallerOfPackage = 2;
     const py::gil_scoped_acquire acquire;
-    const std::string message = in_python(one_line(text));
+    const std::string message = one_line(render(text, kStyle));
     if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), kCallerOfPackage) != 0)
         throw py::error_already_set();
 }
 
-/// OpenImageIO and OpenEXR use other words for it.
-bool is_out_of_memory(const std::string& message) {
-    const auto has = [&](const char* words) { return message.find(words) != std::string::npos; };
-    return has("not enough memory") || has("no memory for") || has("bad_alloc") ||
-           has("allocate memory");
+PyObject* exception_of(const Problem& problem) {
+    switch (problem.kind) {
+        case Problem::Kind::memory:
+            return PyExc_MemoryError;
+        case Problem::Kind::file:
+            break;
+        case Problem::Kind::internal:
+            return PyExc_RuntimeError;
+        default:
+            return PyExc_ValueError;
+    }
+    switch (problem.error_number) {
+        case ENOENT:
+            return PyExc_FileNotFoundError;
+        case EACCES:
+            return PyExc_PermissionError;
+        case EISDIR:
+            return PyExc_IsADirectoryError;
+        default:
+            return PyExc_OSError;
+    }
 }
 
-/// OSError, or its subclass for the reason.
-PyObject* file_error_of(const std::string& message) {
-    for (const auto& [number, type] :
-         {std::pair(ENOENT, PyExc_FileNotFoundError), std::pair(EACCES, PyExc_PermissionError),
-          std::pair(EISDIR, PyExc_IsADirectoryError)}) {
-        if (message.ends_with(reason_of(number))) return type;
-    }
-    return PyExc_OSError;
-}
-
-/// @param type  the exception, unless memory ran out
-void set_error(PyObject* type, std::string message) {
-    if (is_out_of_memory(message)) {
-        type = PyExc_MemoryError;
-        // A message begins with the name of the file, or of the function.
-        message = message.substr(0, message.find(": ")) + ": not enough memory";
-    }
-    PyErr_SetString(type, in_python(one_line(message)).c_str());
+void set_error(const Problem& problem) {
+    PyErr_SetString(exception_of(problem), one_line(render(problem, kStyle)).c_str());
 }
 
 /// The reader of .tone files and LUTs.
@@ -220,17 +231,23 @@ ImageBuf tonemap_picture(const ImageBuf& given, const TonemapOptions& options,
     }
     const ImageBuf& source = resize.empty() ? given : light;
     ImageBuf result;
-    bool is_done = false;
-    {
+    try {
         const py::gil_scoped_release release;
-        is_done = tonemap(result, source, options, roi, nthreads, told.callback(), &told);
+        with_memory_for("tonemap", [&] {
+            Tonemapper(options).run(result, source, roi, nthreads, told.callback(), &told);
+        });
+    } catch (const Error& e) {
+        told.check();
+        Problem problem = e.problem();
+        // A picture in memory is an argument.
+        if (problem.kind == Problem::Kind::file && source.initialized())
+            problem.kind = Problem::Kind::usage;
+        if (problem.kind == Problem::Kind::usage && !source.initialized())
+            problem.kind = Problem::Kind::file;
+        throw Error(problem);
     }
     told.check();
-    if (is_done) return result;
-    const std::string why = result.geterror();
-    if (is_out_of_memory(why)) throw FileError("tonemap: not enough memory");
-    if (!source.initialized()) throw FileError(why);
-    throw Error(why);
+    return result;
 }
 
 /// A picture that is a view of an array's memory.
@@ -411,7 +428,7 @@ py::dict describe(const LutApplication& application) {
     d["size"] = application.size;
     d["input_encoding"] = lut_encoding_of(application, application.format);
     d["display"] = application.display;
-    d["steps"] = lut_steps_of(application, application.format);
+    d["steps"] = render(lut_steps_of(application, application.format), kStyle);
     return d;
 }
 
@@ -525,7 +542,7 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
                        const std::string& subsampling, bool verifies, const std::string& resize,
                        const py::kwargs& arguments) {
     if (!resize.empty()) (void)parse_resize(resize);
-    check_overwriting("tonemap_file", {{in, out}}, is_in_place);
+    check_overwriting({{in, out}}, is_in_place);
     TonemapOptions options = parse_options(op, arguments);
     WriteOptions write;
     set_alpha(write, alpha);
@@ -564,6 +581,10 @@ py::dict describe_file(const std::string& path, const std::string& input,
             path, [&] { return describe_picture(PictureReader(path, 1, read).spec(), input); });
     }
     said.ignored.insert(said.ignored.begin(), warnings.begin(), warnings.end());
+    for (std::vector<std::string>* texts : {&said.ignored, &choices}) {
+        for (std::string& text : *texts)
+            text = render(text, kStyle);
+    }
     const Primaries& p = said.color.primaries;
     py::dict d;
     d["space"] = said.color.name;
@@ -575,7 +596,7 @@ py::dict describe_file(const std::string& path, const std::string& input,
     d["subimage"] = said.subimage;
     d["units"] = said.units;
     d["alpha"] = said.alpha;
-    d["rule"] = said.rule;
+    d["rule"] = render(said.rule, kStyle);
     d["ignored"] = said.ignored;
     d["choices"] = choices;
     return d;
@@ -710,10 +731,8 @@ PYBIND11_MODULE(_tonewright, m) {
     py::register_exception_translator([](std::exception_ptr error) {
         try {
             if (error) std::rethrow_exception(error);
-        } catch (const tw::FileError& e) {
-            tw::set_error(tw::file_error_of(e.what()), e.what());
         } catch (const tw::Error& e) {
-            tw::set_error(PyExc_ValueError, e.what());
+            tw::set_error(e.problem());
         } catch (const std::bad_alloc&) {
             PyErr_SetString(PyExc_MemoryError, "not enough memory");
         }

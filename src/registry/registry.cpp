@@ -100,21 +100,25 @@ NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) 
         for (const Operator& op : *operators)
             choices.push_back({op.id, {op.view, op.title}});
     }
-    std::string note;
-    for (const AbsentOperator& absent : kAbsentOperators) {
-        if (is_same_name(absent.name, name)) note = std::string("; ") + absent.note;
-    }
-    // A name that people look for has a better answer than the nearest one.
     const std::string shown = trimmed(name).empty() ? "empty" : std::string(name);
-    throw Error("operator is " + shown + "; expected an id from `tonewright list`" +
-                (note.empty() ? did_you_mean(name, choices) : note));
+    Problem problem = {.what = "operator is " + shown,
+                       .expected = "an id from <<list=operators>>",
+                       .suggestion = suggested_names(name, choices)};
+    for (const AbsentOperator& absent : kAbsentOperators) {
+        if (!is_same_name(absent.name, name)) continue;
+        // A name that people look for has a better answer than the nearest one.
+        problem.expected += std::string("; ") + absent.note;
+        problem.suggestion.clear();
+    }
+    throw Error(problem);
 }
 
 const Operator& require_no_surroundings(const Operator& op) {
     if (!op.is_local()) return op;
-    throw Error("operator is " + op.id +
-                ", a local operator, which needs a picture; expected an operator that `tonewright "
-                "list` does not mark as local, or `tonewright apply` with a picture");
+    throw Error(
+        Problem{.what = "operator is " + op.id + ", a local operator, which needs a picture",
+                .expected = "an operator that <<list=operators>> does not mark as local, or "
+                            "<<task=apply>> with a picture"});
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -220,7 +224,7 @@ std::string elsewhere(const Operator& op, std::string_view name) {
         if (folded_name(look.id).find(folded) != std::string::npos) looks.push_back(look.id);
     }
     std::string note;
-    if (!looks.empty()) note += "; looks for it: --look " + join_choices(looks);
+    if (!looks.empty()) note += "; looks for it: <<look=" + join_choices(looks) + ">>";
     if (op.dialects.empty()) return note;
     std::vector<std::string> others;
     for (const Operator& other : all_operators()) {
@@ -281,7 +285,7 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
         } catch (const Error& e) {
             for (const auto& [name, value] : all) {
                 if (const std::string note = elsewhere(op, name); !note.empty())
-                    throw Error(e.what() + note);
+                    throw Error(e.text() + note);
             }
             throw;
         }

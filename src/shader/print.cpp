@@ -200,15 +200,19 @@ class ProgramPrinter {
                                                  return info.language == language_.language;
                                              })
                                     ->id;
-        throw Error(fmt::format(
-            "shader: {} reads {}; {}", name_, what,
-            !has_texture && !is_small
-                ? "expected a language with textures: glsl, glsl-es, hlsl, wgsl; or c"
-            : result
-                ? "tables is texture; expected array: " + id + " has none that a function can read"
-                : fmt::format("tables is array; expected texture: an array in {} should hold at "
-                              "most {} numbers, not {}",
-                              id, language_.largest_array, numbers)));
+        const std::string reads = name_ + " reads " + what;
+        if (!has_texture && !is_small) {
+            throw Error(
+                Problem{.value = reads,
+                        .expected = "a language with textures: glsl, glsl-es, hlsl, wgsl; or c"});
+        }
+        throw Error(Problem{
+            .value = reads + "; tables is " + (result ? "texture" : "array"),
+            .expected = result
+                            ? "array: " + id + " has none that a function can read"
+                            : fmt::format("texture: an array in {} should hold at most {} numbers, "
+                                          "not {}",
+                                          id, language_.largest_array, numbers)});
     }
 
     /// Declares a texture; the caller fills in its texels.

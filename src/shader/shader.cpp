@@ -57,20 +57,21 @@ bool is_of_a_display(const View& view) {
 void check(const ShaderRequest& request) {
     const Operator& op = *request.view.op.op;
     if (op.is_local()) {
-        throw Error("shader: " + op.id +
-                    " looks at the surroundings of a pixel; expected an operator that maps each "
-                    "pixel by itself");
+        throw Error(Problem{.value = op.id + " looks at the surroundings of a pixel",
+                            .expected = "an operator that maps each pixel by itself"});
     }
     const std::vector<std::string> live = live_parameters(op);
     std::vector<std::string> choices = {std::string(kExposureUniform)};
     if (!request.is_inverse) choices.insert(choices.end(), live.begin(), live.end());
     for (auto at = request.uniforms.begin(); at != request.uniforms.end(); ++at) {
         if (std::find(choices.begin(), choices.end(), *at) == choices.end()) {
-            throw Error("shader: uniform is " + printable(*at) + "; expected " +
-                        join_choices(choices) + did_you_mean(*at, choices));
+            throw Error({.parameter = "uniforms",
+                         .value = printable(*at),
+                         .expected = join_choices(choices),
+                         .suggestion = suggested_names(*at, choices)});
         }
         if (std::find(request.uniforms.begin(), at, *at) != at)
-            throw Error("shader: uniform is " + *at + " twice; expected it once");
+            throw Error({.parameter = "uniforms", .value = *at + " twice", .expected = "it once"});
     }
 }
 
@@ -527,9 +528,9 @@ Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     shader.textures = std::move(printed.textures);
     if (request.application) {
         if (!shader.textures.empty()) {
-            throw Error("shader: " + shader.function + " reads a texture; expected --language " +
-                        "instead of --for: a file for " + request.application->title +
-                        " holds none");
+            throw Error(Problem{.value = shader.function + " reads a texture",
+                                .expected = "<<language>> instead of <<application>>: a file for " +
+                                            request.application->title + " holds none"});
         }
         shader.text = wrap(*request.application, shader, arguments_of(request));
     }

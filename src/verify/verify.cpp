@@ -476,8 +476,9 @@ VerifyResult measure_all(const VerifyOptions& options,
     if (displays.empty()) displays = {"srgb"};
     const InputSpace& input = find_input_space(options.input);
     if (input.is_camera) {
-        throw Error("verify: input is " + input.id +
-                    "; expected a space of the config, which has only log encodings of cameras");
+        throw Error({.parameter = "input",
+                     .value = input.id,
+                     .expected = "a space of the config, which has only log encodings of cameras"});
     }
     std::vector<View> views;
     for (const ResolvedOperator& op : operators) {
@@ -592,7 +593,7 @@ VerifyResult measure_all(const VerifyOptions& options,
                 lowering.insert(0, "chain: ");
             }
         } catch (const OCIO::Exception& e) {
-            throw FileError(fmt::format("verify: {}: {} on {}: {}", options.config, view.op.label,
+            throw FileError(fmt::format("{}: {} on {}: {}", options.config, view.op.label,
                                         view.display, one_line(e.what())));
         }
         const auto cpu = [&](OCIO::OptimizationFlags flags) {
@@ -670,7 +671,7 @@ VerifyResult verify(const VerifyOptions& options,
     try {
         return measure_all(options, on_row);
     } catch (const OCIO::Exception& e) {
-        throw FileError(fmt::format("verify: {}: {}", options.config, one_line(e.what())));
+        throw FileError(fmt::format("{}: {}", options.config, one_line(e.what())));
     }
 }
 

@@ -994,7 +994,7 @@ def usage_errors(bad, picture):
         (["bake", "hable", "-o", "out.cube", "--input-encoding", "log2:1"], "log2:1; LO:HI"),
         (["bake", "hable", "-o", "out.cube", "--input-encoding", "log2:5:1"], "log2:5:1; LO < HI"),
         (["bake", "hable", "-o", "out.cube", "--input-encoding", "log2:-100:100"], "[-64, 64]"),
-        (["bake", "--all", "new", "--for", "krita"], "application is krita; resolve"),
+        (["bake", "--all", "new", "--for", "krita"], "--for is krita; resolve"),
         (["bake", "--all", "new", "--for", "unty"], "did you mean unity?"),
         (["bake", "agx_sobotka", "-o", "out.cube", "--input-encoding", "linear"], "linear; acescct or log2"),
         (["bake", "agx_sobotka", "-o", "out.cube", "--size", "16"], "size is 16; [17, 129]"),

@@ -808,7 +808,7 @@ def check_output(report, command, folder):
     report.check("apply --lut: PQ in a JPEG: one warning", said.count("\n") == 1 and "JPEG does not say" in said, said)
     _, said = applied("display_p3.cube", "out.exr")
     report.check("apply --lut: code values in an EXR: one warning", said.count("\n") == 1
-                 and "bake the LUT with --display linear" in said, said)
+                 and "a LUT that is baked with --display linear" in said, said)
     (folder / "adobe.cube").write_text(GOOD["adobe.cube"])
     png, _ = applied("adobe.cube", "out.png")
     report.check("apply --lut of a file that says nothing: no tag", not any(

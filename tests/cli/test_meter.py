@@ -155,7 +155,7 @@ def ranges(tool, report):
     report.bound("apply: cd/m2", np.abs(shown / (gray / 203 / 100) - 1).max(), 3e-7)  # three roundings of floats
     tool.refused("a white that nothing has", 2, "reference white is 203; expected 100", "apply", "nits.exr", "bad.png",
                  "--operator", "hable", "--input", "lin_rec709", "--reference-white", 203)
-    tool.refused("units that do not exist", 2, "input units is nits; expected relative or cd/m2", "meter", "nits.exr",
+    tool.refused("units that do not exist", 2, "--input-units is nits; expected relative or cd/m2", "meter", "nits.exr",
                  "--input-units", "nits")
     # A sun of 300,000: limited after the exposure, it is as bright as it is.
     write_exr(tool.folder / "sun.exr", {c: np.full((8, 8), x, np.float32) for c, x in zip("RGB", (3e5, 2e5, 8e4))})
@@ -337,19 +337,19 @@ def refusals(tool, report):
         "delta is 0; expected [1e-10, 1]": apply("--delta", "0"),
         "delta is nan": apply("--delta", "nan"),
         "--percentiles is 40; expected two percentages": apply("--percentiles", "40"),
-        "low percentile is 95": apply("--percentiles", "95,40"),
-        "high percentile is 101": apply("--percentiles", "0,101"),
+        "--percentiles is 95": apply("--percentiles", "95,40"),
+        "--percentiles is 101": apply("--percentiles", "0,101"),
         "--key is bright": apply("--key", "bright"),
         "key is -1": apply("--key=-1"),
         "--calibration is 9.5; expected key or 9.6": apply("--calibration", "9.5"),
         "expected none with --calibration 9.6": apply("--calibration", "9.6", "--key", "0.2"),
         "compensation is 99": apply("--compensation", "99"),
-        "lower exposure limit is 5": apply("--exposure-limits", "5,-5"),
+        "--exposure-limits is 5": apply("--exposure-limits", "5,-5"),
         "--meter-region is 0,0,0,5": apply("--meter-region", "0,0,0,5"),
         "--meter-region is 1,2,3,4,5": apply("--meter-region", "1,2,3,4,5"),
         "region is 90,90,5,5": apply("--meter-region", "90,90,5,5"),
         "bins is 2": apply("--histogram-bins", "2"),
-        "histogram minimum is 4": apply("--histogram-range", "4,1"),
+        "--histogram-range is 4": apply("--histogram-range", "4,1"),
         "--auto-exposure": ("apply", "a.exr", "bad.exr", "--operator", "hable", "--delta", "0.1"),
         "--adapt is given; expected --frames RANGE with it": apply("--adapt"),
         "--adapt is given; expected --auto-exposure METHOD with it": ("apply", "shot.####.exr", "bad.####.exr", "--operator",

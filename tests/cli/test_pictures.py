@@ -241,7 +241,7 @@ def check_color(check, scratch):
     _, spec = read(log)
     if spec.getattribute("oiio:ColorSpace") == "PanaLog":
         fails(check, "an unknown color space", log, 3, "oiio:ColorSpace of the picture")
-    fails(check, "--input of no space", log, 2, "input space is lin_rec708", "--input", "lin_rec708")
+    fails(check, "--input of no space", log, 2, "--input is lin_rec708", "--input", "lin_rec708")
     # The second is what OpenImageIO 3.1 calls it.
     report.check("a result in sRGB says so", read_tag(check, scratch) in ("sRGB", "srgb_rec709_scene"))
 

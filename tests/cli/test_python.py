@@ -269,7 +269,7 @@ def check_luts(report, tw, command, scratch):
     raises(report, "bake under no format's name", ValueError, "expected .cube: the format is cube",
            lambda: tw.bake("hable", str(scratch / "a.txt"), format="cube"))
     raises(report, "bake under a picture's name", ValueError,
-           'expected format="hald", "strip" or "strip_up" with a picture, or host=',
+           'expected format="hald", strip or strip_up with a picture, or host=',
            lambda: tw.bake("hable", str(scratch / "a.png")))
     ringing = scratch / "ringing.cube"
     warned(report, "bake that is off on photographs", [f"{ringing} is more than one code of 255 off on", 'input="lin_rec2020"'],

@@ -337,13 +337,13 @@ def check_match(report, command, folder):
 
 def check_errors(report, command, folder):
     """One line that names what is wrong, exit status 2, and no file."""
-    for arguments, words in ((["--for", "reslove"], "application is reslove; did you mean resolve?"),
+    for arguments, words in ((["--for", "reslove"], "--for is reslove; did you mean resolve?"),
                              (["--format", "3dl", "--depth", "8"], "depth is 8; expected 12, 10 or 16 for 3dl"),
                              (["--format", "cube", "--depth", "16"], "depth is 16; expected 32 for cube"),
                              (["--format", "hald", "--size", "33"], "size is 33; a square"),
                              (["--format", "strip", "--size", "65"], "size is 65; [2, 64]"),
                              (["--size", "33", "--max-error", "0.1"], "size is 33; no size with --max-error"),
-                             (["--format", "strip", "--max-error", "1e-9"], "max error is 1e-09; at least"),
+                             (["--format", "strip", "--max-error", "1e-9"], "--max-error is 1e-09; at least"),
                              (["--depth", "0"], "depth is 0; expected 32 for cube"),
                              (["--format", "icc", "--depth", "8"], "depth is 8; expected 16 for icc"),
                              (["--format", "icc", "--icc-version", "3"], "--icc-version; 3"),

@@ -45,7 +45,7 @@ def check_refusals(report, command, scratch):
         (["hable", "--for", "three"], USAGE, "did you mean threejs"),
         (["hable", "--language", "c", "--uniforms", "whit"], USAGE, "did you mean white?"),
         (["hable", "--language", "c", "--uniforms", "white,white"], USAGE, "white twice"),
-        (["hable_piecewise", "--language", "c", "--uniforms", "toe_length"], USAGE, "uniform is toe_length"),
+        (["hable_piecewise", "--language", "c", "--uniforms", "toe_length"], USAGE, "--uniforms is toe_length"),
         (["reinhard_local", "--language", "c"], USAGE, "reinhard_local"),
         (["reinhard_jodie", "--language", "c", "--inverse"], USAGE, "reinhard_jodie has no inverse: stage "),
         (["agx_blender", "--language", "dctl"], USAGE, "expected a language with textures"),

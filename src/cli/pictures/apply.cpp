@@ -54,11 +54,7 @@ bool keeps_cover(const ApplyOptions& options) {
 WriteOptions write_options_of(const ApplyOptions& options, const std::string& out) {
     WriteOptions write;
     if (!options.type.empty()) set_pixel_type(write, options.type);
-    try {
-        set_alpha(write, options.alpha);
-    } catch (const Error& e) {
-        throw Error(std::string("apply: --") + e.what());
-    }
+    set_alpha(write, options.alpha);
     if (!keeps_cover(options) && options.picture.unpremult) {
         throw Error(fmt::format(
             "apply: --alpha is {}; expected keep with --unpremult, which divides by alpha",
@@ -100,7 +96,7 @@ MeterOptions meter_options_of(const ApplyOptions& options) {
 /// would have another frame's exposure.
 void take_error(const MeteredShot& shot, FrameFiles& frame) {
     for (const MeteredPicture& picture : shot.pictures) {
-        if (picture.path == frame.in) frame.error = picture.error;
+        if (picture.path == frame.in) frame.problem = picture.problem;
     }
 }
 
@@ -165,10 +161,9 @@ std::vector<MeteredPicture> meter_each(std::vector<FrameFiles>& files,
         meter_pictures(paths, meter_options_of(options), options.shot.cache, options.picture);
     for (std::size_t i = 0; i < files.size(); ++i) {
         // If there are several, tone mapping reports the reason.
-        if (files.size() == 1 && metered[i].is_file_error) throw FileError(metered[i].error);
-        if (files.size() == 1 && !metered[i].error.empty()) throw Error(metered[i].error);
-        if (options.picture.timeout > 0) files[i].error = metered[i].error;
-        if (!metered[i].error.empty()) continue;
+        if (files.size() == 1 && metered[i].problem) throw_problem(*metered[i].problem);
+        if (options.picture.timeout > 0) files[i].problem = metered[i].problem;
+        if (metered[i].problem) continue;
         files[i].exposure_stops =
             options.exposure +
             suggested_exposure(
@@ -193,12 +188,14 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
                std::optional<LutOptions>& stated) {
     WriteOptions write = write_options_of(options, file.out);
     Warnings warnings(file.out);
-    write.warn = [hear = warnings.hearer()](std::string text) {
+    write.warn = [hear = warnings.hearer()](const std::string& text) {
         // The LUT decides the display.
-        constexpr std::string_view kRemedy = "use --display linear";
-        if (const std::size_t at = text.find(kRemedy); at != std::string::npos)
-            text.replace(at, kRemedy.size(), "bake the LUT with --display linear");
-        hear(text);
+        const MessageStyle style = {
+            .setting = [](std::string_view parameter, std::string_view value) {
+                const std::string option = command_style().setting(parameter, value);
+                return parameter == "display" ? "a LUT that is baked with " + option : option;
+            }};
+        hear(render(text, style));
     };
     OIIO::ImageBuf source = read_picture(file.in, options.picture, options.input);
     SourceColor color = about_picture(file.in, [&] {
@@ -256,7 +253,7 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
         return open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
     });
     (void)write_options_of(options, files.files.front().out);
-    check_overwriting("apply", files.files, options.is_in_place);
+    check_overwriting(files.files, options.is_in_place);
     std::optional<LutOptions> stated;
     if (files.is_single) {
         apply_lut(options, lut, files.files.front(), stated);
@@ -268,10 +265,10 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
         try {
             apply_lut(options, lut, file, stated);
         } catch (const Error& e) {
-            file.error = e.what();
+            if (e.problem().kind == Problem::Kind::check) throw;  // --strict
+            print_message("apply: " + render(e.problem(), command_style()));
             exit_code = kCheckFailed;
         }
-        if (!file.error.empty()) print_message("apply: " + file.error);
     }
     return exit_code;
 }
@@ -371,7 +368,7 @@ int run_on_files(ApplyOptions options) {
         return apply_to_frames(tonemapper, options, write, prepare);
     }
     if (is_of_sequence) throw Error("apply: --statistics is sequence; expected --frames with it");
-    check_overwriting("apply", files.files, options.is_in_place);
+    check_overwriting(files.files, options.is_in_place);
     if (!files.is_single) {
         require_writable_folder(options.output);
         warn_of_histograms(meter_each(files.files, options));
@@ -400,7 +397,7 @@ int run_on_files(ApplyOptions options) {
         }
     } catch (const FileError& e) {
         if (!is_frame_pattern(file.in)) throw;
-        throw FileError(std::string(e.what()) + "; for the frames of a shot, use --frames 1-100");
+        throw FileError(e.text() + "; for the frames of a shot, use --frames 1-100");
     }
     messages.print();
     warnings.print();
@@ -423,10 +420,11 @@ int run_apply(const ApplyOptions& given) {
         const int exit_code = run_on_files(std::move(options));
         streams.finish();
         return exit_code;
-    } catch (const FileError& e) {
-        throw FileError(streams.with_dashes(e.what()));
     } catch (const Error& e) {
-        throw Error(streams.with_dashes(e.what()));
+        Problem problem = e.problem();
+        for (std::string* text : {&problem.what, &problem.value, &problem.expected})
+            *text = streams.with_dashes(std::move(*text));
+        throw_problem(problem);
     }
 }
 

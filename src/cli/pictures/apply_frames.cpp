@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 enum class Missing { error, skip, hold };
 
 Missing parse_missing(const std::string& text) {
-    return static_cast<Missing>(find_choice("apply: --missing", text, {"error", "skip", "hold"}));
+    return static_cast<Missing>(find_choice("missing", text, {"error", "skip", "hold"}));
 }
 
 /// The files of a shot, some of whose frames may be missing.
@@ -98,9 +98,9 @@ std::map<int, int> held_frames(Shot& shot, std::vector<int> numbers) {
     return held;
 }
 
-/// The reason why a missing frame cannot be read; empty if a reader understands its name, as that
+/// The reason why a missing frame cannot be read; nothing if a reader understands its name, as that
 /// of a picture that is computed.
-std::string why_missing(const std::string& name) {
+std::optional<Problem> why_missing(const std::string& name) {
     const QuietStderr quiet;
     try {
         (void)open_picture(name);
@@ -137,7 +137,7 @@ Plan plan_frames(const std::string& in, const std::string& out, const FrameOptio
     Shot shot(in);
     std::map<int, int> held;
     if (missing == Missing::hold) held = held_frames(shot, numbers);
-    std::optional<std::string> reason;  // of every missing frame
+    std::optional<std::optional<Problem>> reason;  // of every missing frame
     Plan plan;
     for (const int number : numbers) {
         FrameFiles frame = {shot.name(number), frame_name("out", out, number)};
@@ -152,8 +152,7 @@ Plan plan_frames(const std::string& in, const std::string& out, const FrameOptio
             }
             // A million of them must not take a million attempts to open a picture.
             if (!reason) reason = why_missing(frame.in);
-            if (!reason->empty())
-                frame.error = fmt::format("{}: cannot read: {}", frame.in, *reason);
+            if (*reason) frame.problem = within(frame.in + ": cannot read", **reason);
         }
         plan.numbers.push_back(number);
         plan.frames.push_back(std::move(frame));
@@ -171,11 +170,11 @@ std::size_t print_failures(const std::vector<FrameFiles>& files) {
     // hash.
     std::unordered_set<std::size_t> errors;
     for (const FrameFiles& file : files) {
-        if (file.error.empty()) continue;
+        if (!file.problem) continue;
         ++failed;
-        if (errors.insert(std::hash<std::string>()(file.error)).second &&
-            errors.size() <= kMostLines)
-            print_message("apply: " + file.error);
+        const std::string text = render(*file.problem, command_style());
+        if (errors.insert(std::hash<std::string>()(text)).second && errors.size() <= kMostLines)
+            print_message("apply: " + text);
     }
     if (errors.size() > kMostLines)
         print_message(fmt::format("apply: and {} more", errors.size() - kMostLines));
@@ -195,7 +194,7 @@ void print_summary(const Plan& plan) {
     for (std::size_t i = 0; i < plan.frames.size(); ++i) {
         const FrameFiles& frame = plan.frames[i];
         skipped += frame.is_skipped ? 1 : 0;
-        if (!frame.error.empty()) failed.push_back(plan.numbers[i]);
+        if (frame.problem) failed.push_back(plan.numbers[i]);
     }
     print_failures(plan.frames);
     const std::size_t count = plan.frames.size() + plan.missing_count;
@@ -255,7 +254,7 @@ void run(const Tonemapper& tonemapper, std::vector<FrameFiles>& files, SequenceO
     std::vector<FrameFiles> open;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < files.size(); ++i) {
-        if (!files[i].error.empty()) continue;
+        if (files[i].problem) continue;
         places.push_back(i);
         open.push_back(std::move(files[i]));
     }
@@ -266,7 +265,7 @@ void run(const Tonemapper& tonemapper, std::vector<FrameFiles>& files, SequenceO
 
 int exit_code_of(const std::vector<FrameFiles>& files) {
     const bool any_failed = std::any_of(files.begin(), files.end(),
-                                        [](const FrameFiles& f) { return !f.error.empty(); });
+                                        [](const FrameFiles& f) { return f.problem.has_value(); });
     return any_failed ? kCheckFailed : kOk;
 }
 
@@ -283,7 +282,7 @@ void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& fi
     std::vector<FrameFiles*> open;
     std::vector<std::string> names;
     for (FrameFiles& file : files) {
-        if (!file.error.empty()) continue;
+        if (file.problem) continue;
         open.push_back(&file);
         names.push_back(file.in);
     }
@@ -304,21 +303,15 @@ void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& fi
         std::vector<FrameFiles> files_of_one = {*open[i]};
         tonemap_files(tonemapper, files_of_one, one);
         const FrameFiles& file = files_of_one.front();
-        return Json{{"error", one_line(file.error)},
-                    {"is_file_error", file.is_file_error},
-                    {"is_skipped", file.is_skipped},
-                    {"messages", messages.json()}}
-            .dump();
+        if (file.problem) throw_problem(*file.problem);
+        return Json{{"is_skipped", file.is_skipped}, {"messages", messages.json()}}.dump();
     };
     run_contained(names, jobs, picture.timeout, work,
                   [&](std::size_t i, const ContainedResult& result) {
                       FrameFiles& file = *open[i];
-                      file.error = result.error;
-                      file.is_file_error = result.failure == ContainedResult::Failure::file;
-                      if (result.error.empty()) {
+                      file.problem = result.problem;
+                      if (!result.problem) {
                           const Json told = Json::parse(result.value);
-                          file.error = std::get<std::string>(told.at("error").value());
-                          file.is_file_error = std::get<bool>(told.at("is_file_error").value());
                           file.is_skipped = std::get<bool>(told.at("is_skipped").value());
                           KeptMessages::repeat(told.at("messages"), options.write, options.read);
                       } else {
@@ -344,7 +337,7 @@ void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
     };
     run_contained({file.in}, 1, picture.timeout, work,
                   [&](std::size_t, const ContainedResult& result) {
-                      if (!result.error.empty()) remove_leftovers({file.out});
+                      if (result.problem) remove_leftovers({file.out});
                       result.require();
                       KeptMessages::repeat(Json::parse(result.value), write, read);
                   });
@@ -354,7 +347,7 @@ int apply_to_frames(
     const Tonemapper& tonemapper, const ApplyOptions& options, WriteOptions write,
     const std::function<void(std::vector<FrameFiles>&, const std::vector<int>&)>& prepare) {
     Plan plan = plan_frames(options.in, options.out, options.frames);
-    check_overwriting("apply", plan.frames, options.is_in_place);
+    check_overwriting(plan.frames, options.is_in_place);
     Warnings warnings(options.out);
     write.warn = warnings.hearer();
     prepare(plan.frames, plan.numbers);

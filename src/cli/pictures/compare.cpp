@@ -135,7 +135,7 @@ void check_outputs(const CompareOptions& options, const std::vector<Rendering>& 
     }
     // Also where the sheet is in the folder of the pictures.
     if (operators.contains(options.file)) outputs.front() = "./" + options.file;
-    require_separate_files("compare", outputs);
+    require_separate_files(outputs);
 }
 
 /// Each picture at full size.
@@ -272,9 +272,9 @@ void run_compare(CompareOptions options) {
     try {
         compare_pictures(std::move(options));
     } catch (const PictureError& e) {
-        throw FileError(fmt::format("compare: {}: {}", path, e.what()));
+        throw FileError(within("compare: " + path, e.problem()));
     } catch (const std::bad_alloc&) {
-        throw FileError(fmt::format("compare: {}: not enough memory", path));
+        throw FileError(within("compare: " + path, no_memory()));
     }
 }
 

@@ -22,6 +22,7 @@
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
+#include "cli/messages.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -29,15 +30,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-using Failure = ContainedResult::Failure;
-
-/// Message of a process: one byte with its kind, and the value or the text.
-std::string message(Failure failure, const std::string& text) {
-    return static_cast<char>('0' + static_cast<int>(failure)) + text;
+/// Message of a process: this byte and the value, or one with the kind of a problem and its text.
+constexpr char kNoProblem = '-';
+std::string message(const Problem& problem) {
+    return static_cast<char>('0' + static_cast<int>(problem.kind)) + one_line(problem.what);
 }
 
 ContainedResult file_failure(const std::string& name, const std::string& reason) {
-    return {.failure = Failure::file, .error = fmt::format("{}: {}", name, reason)};
+    return {.problem =
+                Problem{.kind = Problem::Kind::file, .what = fmt::format("{}: {}", name, reason)}};
 }
 
 /// The work of the new process. It ends without destructors and exit handlers, which would wait for
@@ -49,15 +50,9 @@ ContainedResult file_failure(const std::string& name, const std::string& reason)
     if (::getppid() != parent) ::_exit(1);
     std::string text;
     try {
-        text = message(Failure::none, work(item));
-    } catch (const FileError& e) {
-        text = message(Failure::file, one_line(e.what()));
-    } catch (const std::bad_alloc&) {
-        text = message(Failure::file, "not enough memory");
-    } catch (const Error& e) {
-        text = message(Failure::usage, one_line(e.what()));
+        text = kNoProblem + work(item);
     } catch (const std::exception& e) {
-        text = message(Failure::other, one_line(e.what()));
+        text = message(command_problem(e));
     }
     std::string_view left = text;
     while (!left.empty()) {
@@ -123,10 +118,10 @@ ContainedResult result_of(const Process& process, const std::string& name) {
         return file_failure(
             name, fmt::format("the process ended early (exit code {})", WEXITSTATUS(status)));
     }
-    const auto failure = static_cast<Failure>(process.text.front() - '0');
     const std::string rest = process.text.substr(1);
-    if (failure == Failure::none) return {.value = rest};
-    return {.failure = failure, .error = rest};
+    if (process.text.front() == kNoProblem) return {.value = rest};
+    const auto kind = static_cast<Problem::Kind>(process.text.front() - '0');
+    return {.problem = Problem{.kind = kind, .what = rest}};
 }
 
 /// A process that waits for a device may outlive even this; then it is abandoned.
@@ -140,9 +135,7 @@ void kill_process(const Process& process) {
 }  // namespace
 
 void ContainedResult::require() const {
-    if (failure == Failure::file) throw FileError(error);
-    if (failure == Failure::usage) throw Error(error);
-    if (failure == Failure::other) throw std::runtime_error(error);
+    if (problem) throw_problem(*problem);
 }
 
 void run_contained(const std::vector<std::string>& names, std::size_t jobs, double seconds,

@@ -3,25 +3,23 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tonewright/error.h"
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Result of work in a separate process.
 struct ContainedResult {
-    /// The error: a FileError (also for a crash and a timeout), an Error, or another exception.
-    enum class Failure { none, file, usage, other };
-
     /// The result of the work.
     std::string value = {};
-    Failure failure = Failure::none;
-    /// In one line, with the name; empty: no error.
-    std::string error = {};
+    /// The work's exception, in the words of the command; of kind `file` for a crash and a timeout.
+    std::optional<Problem> problem = {};
 
-    /// Throws the work's exception in this process.
+    /// Throws the problem in this process.
     void require() const;
 };
 

@@ -10,6 +10,7 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "cli/json.h"
+#include "cli/messages.h"
 #include "cli/pictures/commands.h"
 #include "cli/pictures/picture_input.h"
 #include "image/picture_file.h"
@@ -118,6 +119,11 @@ void run_info(const InfoOptions& options) {
         });
         std::vector<std::string>& ignored = told.said.ignored;
         ignored.insert(ignored.begin(), warnings.begin(), warnings.end());
+        for (std::vector<std::string>* texts : {&ignored, &told.choices}) {
+            for (std::string& text : *texts)
+                text = render(text, command_style());
+        }
+        told.said.rule = render(told.said.rule, command_style());
         options.json ? print_json(path, told) : print_text(path, told);
     }
 }

@@ -55,8 +55,8 @@ std::vector<std::string> pictures_of_folder(const std::string& folder) {
 /// One name a line; empty lines and those that begin with `#` are left out.
 std::vector<std::string> names_of_list(const std::string& path) {
     constexpr std::size_t kMostBytes = std::size_t{1} << 26;
-    std::istringstream lines(read_file(path, kMostBytes, [&](const std::string& reason) {
-        throw FileError(path + ": cannot read: " + reason);
+    std::istringstream lines(read_file(path, kMostBytes, [&](const Problem& why) {
+        throw FileError(within(path + ": cannot read", why));
     }));
     std::vector<std::string> names;
     for (std::string line; std::getline(lines, line);) {

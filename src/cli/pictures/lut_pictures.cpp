@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/atomic_file.h"
 #include "cli/elapsed_line.h"
+#include "cli/messages.h"
 #include "cli/pictures/commands.h"
 #include "cli/pictures/picture_input.h"
 #include "image/lut_picture.h"
@@ -18,7 +19,10 @@ void write_shipped_luts(const std::string& folder, const std::string& applicatio
     const ElapsedLine line("bake --all");
     std::vector<ShippedLut> luts = bake_shipped_luts(application);
     std::vector<GeneratedFile> files = make_shipped_files(luts);
-    const std::vector<GeneratedFile> about = describe_shipped_luts(luts);
+    std::vector<GeneratedFile> about = describe_shipped_luts(luts);
+    for (GeneratedFile& file : about) {
+        if (file.path.ends_with(".md")) file.contents = render(file.contents, command_style());
+    }
     files.insert(files.end(), about.begin(), about.end());
     write_generated_files(folder, files, "MANIFEST.csv");
 }

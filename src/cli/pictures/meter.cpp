@@ -188,7 +188,7 @@ void print_table(const std::vector<Metered>& all, const MeterCommandOptions& opt
                all.front().frame ? "frame" : "picture", width, "log average", "histogram", "mean",
                "max", "EV100", "exposure", adapts ? "   adapted" : "");
     for (const Metered& metered : all) {
-        if (!metered.picture.error.empty()) continue;
+        if (metered.picture.problem) continue;
         const Metering& m = metered.picture.metering;
         std::string name = metered.frame ? std::to_string(*metered.frame) : metered.picture.path;
         if (name.size() > width) name = "..." + name.substr(name.size() - width + 3);
@@ -207,8 +207,8 @@ void print_table(const std::vector<Metered>& all, const MeterCommandOptions& opt
 Json to_json(const Metered& metered, const MeterCommandOptions& options, const ExposureRule& rule) {
     Json j = {{"file", metered.picture.path}};
     if (metered.frame) j.add("frame", *metered.frame);
-    if (!metered.picture.error.empty()) {
-        j.add("error", metered.picture.error);
+    if (metered.picture.problem) {
+        j.add("error", metered.picture.problem->what);
         return j;
     }
     const Json measured = tonewright::to_json(metered.picture.metering);
@@ -294,17 +294,18 @@ int run_meter(const MeterCommandOptions& options) {
                    Json{{"options", tonewright::to_json(how)}, {"pictures", pictures}}.dump(2));
     } else if (all.size() > 1) {
         print_table(all, options, rule);
-    } else if (all.front().picture.error.empty()) {
+    } else if (!all.front().picture.problem) {
         print_picture(all.front(), options, rule);
     }
-    if (all.size() == 1 && all.front().picture.error.empty())
+    if (all.size() == 1 && !all.front().picture.problem)
         tell_header(all.front().picture.path, options);
     for (const Metered& metered : all) {
         const MeteredPicture& picture = metered.picture;
         if (const std::string text = histogram_warning(picture); !text.empty()) warn(text);
-        if (picture.error.empty()) continue;
-        exit_code = std::max<int>(exit_code, picture.is_file_error ? kFile : kUsage);
-        print_message("meter: " + picture.error);
+        if (!picture.problem) continue;
+        const bool is_usage = picture.problem->kind == Problem::Kind::usage;
+        exit_code = std::max<int>(exit_code, is_usage ? kUsage : kFile);
+        print_message("meter: " + picture.problem->what);
     }
     return exit_code;
 }

@@ -176,7 +176,9 @@ MeterCache::MeterCache(std::string path, const MeterOptions& options)
         throw FileError(fmt::format("meter cache: {}: {}", path_, reason));
     };
     constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-    const std::string text = read_file(path_, kMostBytes, fail);
+    const std::string text = read_file(path_, kMostBytes, [&](const Problem& why) {
+        throw FileError(within("meter cache: " + path_, why));
+    });
     try {
         const Json all = Json::parse(text);
         std::int64_t version = 0;

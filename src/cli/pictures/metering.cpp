@@ -161,7 +161,7 @@ std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths
     const std::size_t workers = std::clamp<std::size_t>(unknown.size(), 1, all);
     const auto threads_each = static_cast<int>(all / workers);
     const auto tell = [&](std::size_t i) {
-        if (pictures[i].error.empty()) known.add(paths[i], stamps[i], pictures[i].metering);
+        if (!pictures[i].problem) known.add(paths[i], stamps[i], pictures[i].metering);
         ++done_count;
         if (done) done(done_count);
     };
@@ -179,9 +179,8 @@ std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths
         run_contained(names, workers, input.timeout, meter,
                       [&](std::size_t n, const ContainedResult& result) {
                           MeteredPicture& picture = pictures[unknown[n]];
-                          picture.error = result.error;
-                          picture.is_file_error = result.failure == ContainedResult::Failure::file;
-                          if (result.error.empty())
+                          picture.problem = result.problem;
+                          if (!result.problem)
                               picture.metering = metering_from(Json::parse(result.value));
                           tell(unknown[n]);
                       });
@@ -193,8 +192,7 @@ std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths
         try {
             picture.metering = meter_file(picture.path, options, threads_each);
         } catch (const std::exception& e) {
-            picture.error = e.what();
-            picture.is_file_error = dynamic_cast<const FileError*>(&e) != nullptr;
+            picture.problem = command_problem(e);
         }
         const std::lock_guard lock(mutex);
         tell(unknown[n]);
@@ -206,7 +204,7 @@ std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths
 std::string histogram_warning(const MeteredPicture& picture) {
     constexpr double kMostOutside = 0.01;
     const Metering& m = picture.metering;
-    if (!picture.error.empty() || !(m.share_outside() > kMostOutside)) return "";
+    if (picture.problem || !(m.share_outside() > kMostOutside)) return "";
     return fmt::format(
         "{}: {:.3g} % of the picture lies outside the histogram's range, {:g},{:g} in log2 of "
         "luminance; leave out --histogram-range, or set one that holds {:.3g},{:.3g}",
@@ -234,11 +232,10 @@ MeteredShot meter_shot(const std::string& pattern, std::vector<int> frames,
 
 void MeteredShot::require_all() const {
     for (const MeteredPicture& picture : pictures) {
-        if (picture.error.empty()) continue;
-        const std::string message = "meter: " + picture.error +
-                                    "; expected all frames of the shot, the others depend on it";
-        if (picture.is_file_error) throw FileError(message);
-        throw Error(message);
+        if (!picture.problem) continue;
+        Problem problem = within("meter", *picture.problem);
+        problem.expected = "all frames of the shot, the others depend on it";
+        throw_problem(problem);
     }
 }
 
@@ -259,7 +256,7 @@ std::map<int, double> MeteredShot::exposures(const ExposureRule& rule, double de
     std::vector<int> metered;
     std::vector<double> stops;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (!pictures[i].error.empty()) continue;
+        if (pictures[i].problem) continue;
         metered.push_back(numbers[i]);
         stops.push_back(suggested_exposure(
             metered_luminance(pictures[i].metering, rule.method, delta), target));

@@ -30,9 +30,8 @@ struct MeteredInput {
 struct MeteredPicture {
     std::string path;
     Metering metering = {};
-    /// The error, in one line; empty: none.
-    std::string error = {};
-    bool is_file_error = false;
+    /// Why there is none, in the words of the command.
+    std::optional<Problem> problem = {};
 };
 
 /// Meters files, several at the same time, with a timeout each in a process of its own. What a

@@ -41,7 +41,7 @@ class Warnings {
   public:
     /// @param name  of the file or the files, before each text
     explicit Warnings(std::string name) : name_(std::move(name)) {}
-    /// @throws std::runtime_error  --strict was given
+    /// @throws Error  of kind `check`: --strict was given
     void add(const std::string& text);
     void print();
     /// For WriteOptions.
@@ -93,7 +93,7 @@ class FinishedPictures {
     /// @param name  as for Warnings
     explicit FinishedPictures(std::string name) : name_(std::move(name)) {}
     /// False for other texts.
-    /// @throws std::runtime_error  --strict was given
+    /// @throws Error  of kind `check`: --strict was given
     [[nodiscard]] bool take(const std::string& text);
     void print();
 

@@ -24,7 +24,7 @@ void run_sheet(const SheetOptions& options) {
         try {
             check_shown_window(labeled.back().second);
         } catch (const PictureError& e) {
-            throw FileError(fmt::format("sheet: {}: {}", path, e.what()));
+            throw FileError(within("sheet: " + path, e.problem()));
         }
     }
     write_image_atomically(make_contact_sheet(labeled, options.columns, options.cell_width),

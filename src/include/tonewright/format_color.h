@@ -21,7 +21,7 @@ enum class FormatMeaning : unsigned char {
 };
 
 /// A file format, and the colors that are assumed where its header says nothing. File rules of the
-/// config, `--input auto` and the warnings about missing tags come from this table.
+/// config, the input `auto` and the warnings about missing tags come from this table.
 struct FormatColor {
     std::string_view format;  // OpenImageIO's name; a format may have several rows
     std::string_view title;

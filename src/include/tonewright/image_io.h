@@ -37,8 +37,10 @@ struct ReadOptions {
     /// Limit of the pixels that the file may declare.
     double max_pixels = kMaxPixels;
     /// Receives warnings about the file, one line each, without its name: tags that are not used.
+    /// @see render
     std::function<void(const std::string&)> warn = {};
     /// Receives the choice of layer and subimage where there was one, one line without the name.
+    /// @see render
     std::function<void(const std::string&)> note = {};
 };
 
@@ -104,7 +106,7 @@ struct WriteOptions {
     /// `tonewright:exposure`, `tonewright:resize` and `tonewright:display`.
     bool says_how = false;
     /// Receives warnings about the file, in one line without its name, before the file gets its
-    /// final name. An exception stops the writing.
+    /// final name. An exception stops the writing. @see render
     std::function<void(const std::string&)> warn = {};
 };
 

@@ -56,7 +56,7 @@ struct ConfigOptions {
 TONEWRIGHT_API void check_config_options(const ConfigOptions& options);
 
 /// Differences between a config and `tonewright apply`, one line each: operators that take numbers
-/// from the picture have constants in a config.
+/// from the picture have constants in a config. @see render
 /// @throws Error  as check_config_options()
 [[nodiscard]] TONEWRIGHT_API std::vector<std::string> config_warnings(const ConfigOptions& options);
 

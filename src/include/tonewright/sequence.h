@@ -17,10 +17,8 @@ struct FrameFiles {
     std::string out;
     /// Replaces the tonemapper's exposure, in stops.
     std::optional<double> exposure_stops = {};
-    /// The error, in one line; empty: none.
-    std::string error = {};
-    /// True if the error is a FileError.
-    bool is_file_error = false;
+    /// Why there is no result.
+    std::optional<Problem> problem = {};
     /// True if `out` existed and was kept. @see SequenceOptions::skip_existing
     bool is_skipped = false;
 };

@@ -143,6 +143,10 @@ class TONEWRIGHT_API Tonemapper {
     bool operator()(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, OIIO::ROI roi = {},
                     int nthreads = 0, OIIO::ProgressCallback progress = nullptr,
                     void* progress_data = nullptr) const noexcept;
+    /// The same, with exceptions instead of messages.
+    /// @throws Error  of kind `canceled` where `progress` stops it
+    void run(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, OIIO::ROI roi = {}, int nthreads = 0,
+             OIIO::ProgressCallback progress = nullptr, void* progress_data = nullptr) const;
 
   private:
     struct State;

@@ -432,8 +432,8 @@ class Reader {
 };
 
 std::string contents_of(const std::string& file) {
-    return read_file(file, kMaxBytes, [&](const std::string& reason) {
-        throw FileError(file + ": cannot read: " + reason);
+    return read_file(file, kMaxBytes, [&](const Problem& why) {
+        throw FileError(within(file + ": cannot read", why));
     });
 }
 

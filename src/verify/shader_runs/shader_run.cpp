@@ -81,11 +81,11 @@ ShaderRuns make_shader_runs(const std::vector<std::string>& names) {
         } else if (is_same_name(name, "all")) {
             is_all = true;
         } else {
-            chosen.push_back(ids[find_choice("verify: shaders", name, ids)]);
+            chosen.push_back(ids[find_choice("shaders", name, ids)]);
         }
     }
     if (is_none && (is_all || !chosen.empty()))
-        throw Error("verify: shaders is none and more; expected none alone");
+        throw Error({.parameter = "shaders", .value = "none and more", .expected = "none alone"});
     if (is_none) return made;
     for (const Runner& runner : kRunners) {
         const ShaderLanguageInfo& language = find_shader_language(runner.language);

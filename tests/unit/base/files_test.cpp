@@ -128,19 +128,20 @@ TEST_F(Files, ATrialOfAFolderLeavesAFileOfThatNameAlone) {
 
 std::string read_error(const std::string& path, std::size_t longest = 100) {
     std::string why;
-    (void)read_file(path, longest, [&](const std::string& reason) { why = reason; });
+    (void)read_file(path, longest, [&](const Problem& reason) { why = reason.value; });
     return why;
 }
 
 TEST_F(Files, OnlyFilesAreReadAndNothingBlocks) {
     put("a.txt", "text");
-    EXPECT_EQ(read_file(path("a.txt"), 4, [](const std::string& why) { FAIL() << why; }), "text");
+    EXPECT_EQ(read_file(path("a.txt"), 4, [](const Problem& why) { FAIL() << why.value; }), "text");
     EXPECT_EQ(read_error(path("a.txt"), 3), "it has 4 bytes; expected at most 3");
     EXPECT_EQ(read_error(path("none")), "No such file or directory");
     EXPECT_EQ(read_error(folder_.string()), "is a folder");
     for (const std::string& name : {path("pipe"), std::string("/dev/zero")}) {
         EXPECT_EQ(read_error(name), "is no regular file (a pipe or a device); expected a file");
-        EXPECT_EQ(why_not_readable(name), read_error(name));
+        ASSERT_TRUE(why_not_readable(name));
+        EXPECT_EQ(why_not_readable(name)->value, read_error(name));
     }
     EXPECT_EQ(why_no_file(path("none")), "") << "a name may be one that is to be written";
 }

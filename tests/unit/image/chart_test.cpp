@@ -126,7 +126,7 @@ TEST(Chart, AnySize) {
     try {
         (void)make_chart(0, 864);
     } catch (const Error& e) {
-        EXPECT_STREQ(e.what(), "chart: width is 0; expected [320, 16384] pixels");
+        EXPECT_STREQ(e.what(), "width is 0; expected [320, 16384] pixels");
     }
 }
 

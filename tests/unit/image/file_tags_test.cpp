@@ -170,16 +170,16 @@ TEST(FileTags, FormatsWithoutColorTagsWarn) {
               "WebP does not say that its colors are Display P3: viewers assume sRGB");
     EXPECT_EQ(warning("srgb", "a.hdr"),
               "most applications read Radiance HDR as linear light, but the file holds code values "
-              "of sRGB; for linear light, use --display linear");
+              "of sRGB; for linear light, use <<display=linear>>");
     EXPECT_EQ(warning("srgb", "a.exr"),
               "most applications read OpenEXR as linear light, but the file holds code values of "
-              "sRGB; for linear light, use --display linear");
+              "sRGB; for linear light, use <<display=linear>>");
     EXPECT_EQ(warning("srgb", "a.webp"), "");
     EXPECT_EQ(warning("linear", "a.hdr"), "");
     EXPECT_EQ(warning("linear", "a.exr"), "");
     EXPECT_EQ(warning("rec2100_pq", "a.exr"),
               "most applications read OpenEXR as linear light, but the file holds code values of "
-              "Rec.2100-PQ; for linear light, use --display linear");
+              "Rec.2100-PQ; for linear light, use <<display=linear>>");
     EXPECT_EQ(warnings_of(shown_on("srgb"), folder.file("a.jpg"), {.type = TypeDesc::UINT16}),
               std::vector<std::string>{"pixels are 8 bits, not 16 bits"});
 }

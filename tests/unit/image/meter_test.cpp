@@ -566,23 +566,23 @@ TEST(Meter, ErrorsNameTheOption) {
     };
     MeterOptions options;
     options.delta = 0;
-    EXPECT_EQ(error_of(options), "meter: delta is 0; expected [1e-10, 1]");
+    EXPECT_EQ(error_of(options), "delta is 0; expected [1e-10, 1]");
     options = {};
     options.delta = std::nan("");
     EXPECT_NE(error_of(options).find("delta is"), std::string::npos);
     options = {};
     options.bins = 2;
-    EXPECT_EQ(error_of(options), "meter: bins is 2; expected [3, 4096]");
+    EXPECT_EQ(error_of(options), "bins is 2; expected [3, 4096]");
     options = {};
     options.low_percentile = options.high_percentile = 50;
     EXPECT_NE(error_of(options).find("low percentile is 50"), std::string::npos);
     options = {};
     options.histogram_min = 5;
-    EXPECT_NE(error_of(options).find("histogram minimum is 5"), std::string::npos);
+    EXPECT_NE(error_of(options).find("histogram min is 5"), std::string::npos);
     options = {};
     options.region = ROI(5, 9, 0, 1, 0, 1);
     EXPECT_EQ(error_of(options),
-              "meter: region is 5,0,4,1 (x, y, width, height); expected some pixels of the "
+              "region is 5,0,4,1 (x, y, width, height); expected some pixels of the "
               "picture, which is 0,0,1,1");
     options = {};
     options.input = "lin_rec708";

@@ -61,7 +61,7 @@ class Sequence : public testing::Test {
         tonemap_files(Tonemapper({.op = op}), again, options);
         std::vector<int> result;
         for (std::size_t i = 0; i < again.size(); ++i) {
-            EXPECT_EQ(again[i].error, "");
+            EXPECT_FALSE(again[i].problem);
             if (again[i].is_skipped) result.push_back(static_cast<int>(i));
         }
         return result;
@@ -95,11 +95,11 @@ TEST_F(Sequence, OneFrameThatFailsDoesNotStopTheOthers) {
             EXPECT_EQ(std::set(done.begin(), done.end()).size(), 7U);
             for (std::size_t i = 0; i < 7; ++i) {
                 const FrameFiles& frame = frames[i];
-                EXPECT_EQ(frame.error.empty(), i != 2 && i != 4) << frame.error;
-                EXPECT_EQ(frame.is_file_error, i == 2 || i == 4)
-                    << "what a file says is a file error";
+                EXPECT_EQ(frame.problem.has_value(), i == 2 || i == 4);
+                EXPECT_EQ(frame.problem.value_or(Problem{.kind = Problem::Kind::file}).kind,
+                          Problem::Kind::file);
                 EXPECT_FALSE(frame.is_skipped);
-                EXPECT_EQ(fs::exists(frame.out), frame.error.empty());
+                EXPECT_EQ(fs::exists(frame.out), !frame.problem);
                 fs::remove(frame.out);
             }
         }
@@ -163,7 +163,7 @@ TEST_F(Sequence, TheSameBytesAgainWithoutADate) {
                                      std::chrono::sys_seconds(std::chrono::seconds(1000000000))));
         frames[0].in = hdr;
         tonemap_files(Tonemapper({.op = "hable"}), frames);
-        ASSERT_EQ(frames[0].error, "");
+        ASSERT_FALSE(frames[0].problem);
         const std::string date = read_image(frames[0].out).spec().get_string_attribute("DateTime");
         EXPECT_EQ(date, "2001:09:09 01:46:40") << extension;
     }
@@ -221,7 +221,8 @@ TEST_F(Sequence, FilesThatMayNotBeWrittenStay) {
     std::ofstream(frames[0].out) << "old";
     fs::permissions(frames[0].out, fs::perms::owner_read);
     tonemap_files(Tonemapper({.op = "hable"}), frames);
-    EXPECT_EQ(frames[0].error, frames[0].out + ": cannot write: Permission denied");
+    ASSERT_TRUE(frames[0].problem);
+    EXPECT_EQ(render(*frames[0].problem), frames[0].out + ": cannot write: Permission denied");
     EXPECT_EQ(bytes_of(frames[0].out), "old");
 }
 

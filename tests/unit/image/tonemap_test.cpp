@@ -856,7 +856,7 @@ TEST(Tonemap, ErrorsAreOnTheDestination) {
     expect_error(dst, tonemap(dst, src, {.op = "hable", .look = "punchy"}), "look is punchy");
     expect_error(dst, tonemap(dst, src, {.op = "hable", .exposure_stops = 99}), "exposure is 99");
     expect_error(dst, tonemap(dst, src, {.op = "hable", .input = "lin_rec708"}),
-                 "input space is lin_rec708");
+                 "input is lin_rec708");
     expect_error(dst, tonemap(dst, src, {.op = "hable", .display = "srbg"}), "display is srbg");
     expect_error(dst, tonemap(dst, ImageBuf(), hable()), "source is not initialized");
     expect_error(dst, tonemap(dst, ImageBuf("/nonexistent/a.exr"), hable()), "/nonexistent/a.exr");
@@ -1102,7 +1102,7 @@ TEST(TonemapInput, UnknownColorsAreErrors) {
     };
     ImageSpec spec = one_pixel();
     spec.attribute("oiio:ColorSpace", "PanaLog");
-    refused(spec, "oiio:ColorSpace of the picture: input space is PanaLog; expected a name of");
+    refused(spec, "oiio:ColorSpace of the picture: input is PanaLog; expected a name of");
     EXPECT_FALSE(tonemap(make_picture(spec), {.op = "hable", .input = "lin_rec709"}).has_error());
     spec.attribute("oiio:ColorSpace", "Linear");
     set_chromaticities(spec, {});

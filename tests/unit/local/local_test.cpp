@@ -75,7 +75,7 @@ TEST(LocalOperators, OtherBackendsRefuseThem) {
                 EXPECT_TRUE(message.starts_with("operator is " + op.id +
                                                 ", a local operator, which needs a picture"))
                     << message;
-                EXPECT_NE(message.find("tonewright apply"), std::string::npos) << message;
+                EXPECT_NE(message.find("or apply with a picture"), std::string::npos) << message;
             }
         }
     }

@@ -262,7 +262,7 @@ TEST(LutFormatName, RoundTrips) {
     for (const std::string& name : lut_format_names())
         EXPECT_EQ(name_of(parse_lut_format(name)), name);
     EXPECT_EQ(error_of([] { (void)parse_lut_format("cub"); }),
-              "bake: format is cub; expected cube, clf, ctf, spi1d, spi3d, csp, resolve_cube, 3dl, "
+              "format is cub; expected cube, clf, ctf, spi1d, spi3d, csp, resolve_cube, 3dl, "
               "lut, icc, hald, strip, strip_up or raw; did you mean cube?");
 }
 
@@ -586,29 +586,29 @@ TEST(SampleLut, RefusesLutsThatApplicationsShowWrong) {
         << error(r);
     r = request_for("agx_sobotka", "log2");
     r.dimension = LutDimension::one;
-    EXPECT_EQ(error(r).rfind("bake: agx_sobotka mixes channels", 0), 0U) << error(r);
+    EXPECT_EQ(error(r).rfind("agx_sobotka mixes channels", 0), 0U) << error(r);
     EXPECT_EQ(error(request_for("agx_sobotka", "log2", LutFormat::spi1d))
-                  .rfind("bake: agx_sobotka mixes channels", 0),
+                  .rfind("agx_sobotka mixes channels", 0),
               0U);
     r = request_for("hable", "log2", LutFormat::spi1d);
     r.dimension = LutDimension::three;
     EXPECT_EQ(error(r),
-              "bake: format is spi1d; expected a 3D format (cube, clf, ctf, spi3d, csp, "
-              "resolve_cube, 3dl, lut, icc, hald, strip, strip_up, raw) with --3d");
+              "format is spi1d; expected a 3D format (cube, clf, ctf, spi3d, csp, "
+              "resolve_cube, 3dl, lut, icc, hald, strip, strip_up, raw) with dimension=3d");
     r = request_for("hable", "log2", LutFormat::spi3d);
     r.dimension = LutDimension::one;
     EXPECT_EQ(error(r),
-              "bake: format is spi3d; expected a 1D format (cube, clf, ctf, spi1d) with --1d");
+              "format is spi3d; expected a 1D format (cube, clf, ctf, spi1d) with dimension=1d");
     for (const int size : {-1, 0, 16, 130}) {
         EXPECT_EQ(error(request_for("agx_sobotka", "log2", LutFormat::cube, size)),
-                  "bake: size is " + std::to_string(size) + "; expected [17, 129]");
+                  "size is " + std::to_string(size) + "; expected [17, 129]");
     }
     for (const int size : {-1, 0, 1, 65537}) {
         EXPECT_EQ(error(request_for("hable", "log2", LutFormat::cube, size)),
-                  "bake: size is " + std::to_string(size) + "; expected [2, 65536]");
+                  "size is " + std::to_string(size) + "; expected [2, 65536]");
     }
     EXPECT_EQ(error(request_for("hable", "linear", LutFormat::clf, 4096)),
-              "bake: size is 4096; expected none, a half-domain clf has 65536 entries");
+              "size is 4096; expected none, a half-domain clf has 65536 entries");
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -61,10 +61,10 @@ TEST(ShippedSet, DecimalsAreRefusedWhereTheyMeanNothing) {
         }
         return std::string();
     };
-    EXPECT_EQ(message(hable_cube(2)), "bake: decimals is 2; expected [3, 9]");
+    EXPECT_EQ(message(hable_cube(2)), "decimals is 2; expected [3, 9]");
     LutRequest clf = hable_cube(4);
     clf.format = LutFormat::clf;
-    EXPECT_EQ(message(clf), "bake: decimals is 4; expected none for clf; only cube has decimals");
+    EXPECT_EQ(message(clf), "decimals is 4; expected none for clf; only cube has decimals");
 }
 
 }  // namespace

@@ -442,17 +442,18 @@ TEST(Resolve, ReadsNumbersAsTyped) {
 
 TEST(Resolve, UnknownNamesGetTheNearest) {
     EXPECT_EQ(resolve_error("habel"),
-              "operator is habel; expected an id from `tonewright list`; did you mean hable?");
-    EXPECT_EQ(resolve_error("foo"), "operator is foo; expected an id from `tonewright list`");
+              "operator is habel; expected an id from the list of operators; did you mean hable?");
+    EXPECT_EQ(resolve_error("foo"), "operator is foo; expected an id from the list of operators");
     EXPECT_EQ(
         resolve_error("filmic"),
-        "operator is filmic; expected an id from `tonewright list`; Blender's Filmic is a table "
+        "operator is filmic; expected an id from the list of operators; Blender's Filmic is a "
+        "table "
         "without a formula: give its LUT file as the operator (docs/choosing.md); filmic formulas "
         "are hable and unreal");
     EXPECT_EQ(resolve_error("agx_blender:punchy"),
               "agx_blender: preset is punchy; expected formula or hdr; did you mean look=punchy?");
     EXPECT_EQ(resolve_error("photoshop"),
-              "operator is photoshop; expected an id from `tonewright list`");
+              "operator is photoshop; expected an id from the list of operators");
     EXPECT_EQ(resolve_error("reinhard_extended", {{"whit", "2"}}),
               "reinhard_extended: parameter is whit; expected white, apply, "
               "color_correction, saturation or saturation_from; did you mean white?");
@@ -1433,11 +1434,11 @@ TEST(View, UnknownNamesGetTheNearest) {
         return error_of([&] { (void)make_view(resolve_operator("clamp"), input, stops, display); });
     };
     EXPECT_EQ(view_error("lin_rec708", 0, "srgb"),
-              "input space is lin_rec708; expected lin_rec709, lin_ap1, lin_ap0, lin_rec2020, "
+              "input is lin_rec708; expected lin_rec709, lin_ap1, lin_ap0, lin_rec2020, "
               "lin_p3d65, lin_egamut, lin_awg3, lin_awg4, lin_sgamut3, lin_sgamut3cine or "
               "lin_davinci_wg; did you mean lin_rec709?");
     EXPECT_EQ(view_error("bayer", 0, "srgb"),
-              "input space is bayer; expected lin_rec709, lin_ap1, lin_ap0, lin_rec2020, "
+              "input is bayer; expected lin_rec709, lin_ap1, lin_ap0, lin_rec2020, "
               "lin_p3d65, lin_egamut, lin_awg3, lin_awg4, lin_sgamut3, lin_sgamut3cine or "
               "lin_davinci_wg");
     EXPECT_EQ(view_error("lin_rec709", 0, "srbg"),

@@ -137,7 +137,7 @@ TEST(SourceColors, WhereLightIsNeededTheMessageSaysSo) {
         return std::string("no error");
     };
     for (const char* name : {"ACEScct", "logc3", "sRGB - Texture", "Rec.2100-HLG", "cicp:9/16"}) {
-        EXPECT_EQ(error(name).find(std::string("input space is ") + name +
+        EXPECT_EQ(error(name).find(std::string("input is ") + name +
                                    ", a color of pictures; expected lin_rec709, "),
                   0)
             << error(name);

@@ -406,14 +406,13 @@ TEST(Shader, ACurveOfEachChannelIsWrittenOnce) {
 TEST(Shader, ErrorsAreOneLine) {
     ShaderRequest request = request_of("hable");
     request.uniforms = {"whit"};
-    EXPECT_NE(error_of(request).find("shader: uniform is whit; expected exposure"),
-              std::string::npos);
+    EXPECT_NE(error_of(request).find("uniforms is whit; expected exposure"), std::string::npos);
     EXPECT_NE(error_of(request).find("did you mean white?"), std::string::npos);
     request.uniforms = {"white", "white"};
-    EXPECT_EQ(error_of(request), "shader: uniform is white twice; expected it once");
+    EXPECT_EQ(error_of(request), "uniforms is white twice; expected it once");
     request = request_of("hable_piecewise");
     request.uniforms = {"toe_length"};  // fixed
-    EXPECT_NE(error_of(request).find("uniform is toe_length"), std::string::npos);
+    EXPECT_NE(error_of(request).find("uniforms is toe_length"), std::string::npos);
     request = request_of("reinhard_jodie");
     request.is_inverse = true;
     EXPECT_NE(error_of(request).find("reinhard_jodie has no inverse: stage "), std::string::npos);

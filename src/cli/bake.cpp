@@ -55,7 +55,8 @@ void require_lut_picture(const std::string& path, int bits) {
 }
 
 /// The application's settings, unless the user gives others.
-void take_from_host(Options& options, const LutApplication& host, LutFormat format) {
+void take_from_host(Options& options, const ResolvedOperator& op, const LutApplication& host,
+                    LutFormat format) {
     const auto is_given = [&](const char* option) { return options.given.contains(option); };
     if (!is_given("--display")) options.display = host.display;
     if (!is_given("--input-encoding")) {
@@ -64,12 +65,10 @@ void take_from_host(Options& options, const LutApplication& host, LutFormat form
         if (!is_given("--input") && is_chain)
             options.input = parse_input_encoding(options.encoding).default_input;
         if (is_chain) return;  // it has sizes of its own
-        if (!is_given("--input"))
-            options.input =
-                lut_input_of(host, *resolve_operator(options.op, {}, {}, operator_files()).op);
+        if (!is_given("--input")) options.input = lut_input_of(host, *op.op);
     }
     // A size counts the entries of a 1D table.
-    const bool is_table = options.one || (!options.three && is_table_for(host, options.view()));
+    const bool is_table = options.one || (!options.three && is_table_for(host, options.view(op)));
     if (options.size && !is_table && format == host.format) check_lut_size(host, *options.size);
     if (is_given("--format")) return;  // another file than the application's own
     if (is_given("--max-error") && is_strip(host.format)) {
@@ -166,9 +165,10 @@ void bake_one(Options& options) {
     request.format = lut_format_of_file(options.file, format, host);
     if (!options.given.contains("--input"))
         options.input = parse_input_encoding(options.encoding).default_input;
-    if (host) take_from_host(options, *host, request.format);
+    const ResolvedOperator op = options.resolved();
+    if (host) take_from_host(options, op, *host, request.format);
     request.encoding = parse_input_encoding(options.encoding);
-    request.view = options.view();
+    request.view = options.view(op);
     request.size = options.size;
     request.bits = options.bits;
     request.icc_version = options.icc_version;

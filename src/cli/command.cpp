@@ -9,15 +9,12 @@
 #include <utility>
 
 TONEWRIGHT_NAMESPACE_BEGIN
-namespace {
 
 void warn_of(const ResolvedOperator& op) {
     static std::set<std::string> said;
     const std::string text = op.caution();
     if (!text.empty() && said.insert(text).second) warn(text);
 }
-
-}  // namespace
 
 Settings ViewOptions::settings() const {
     Settings result;
@@ -36,9 +33,15 @@ Settings ViewOptions::settings() const {
     return result;
 }
 
-View ViewOptions::view() const {
-    ResolvedOperator resolved = resolve_operator(op, settings(), look, operator_files());
-    warn_of(resolved);
+ResolvedOperator ViewOptions::resolved() const {
+    ResolvedOperator result = resolve_operator(op, settings(), look, operator_files());
+    warn_of(result);
+    return result;
+}
+
+View ViewOptions::view() const { return view(resolved()); }
+
+View ViewOptions::view(ResolvedOperator resolved) const {
     const InputSpace& space = find_input_space(input);
     return make_view(std::move(resolved),
                      in_units({space.id, space.primaries}, parse_input_units(input_units)),
@@ -46,9 +49,7 @@ View ViewOptions::view() const {
 }
 
 View ViewOptions::view(const SourceColor& color) const {
-    ResolvedOperator resolved = resolve_operator(op, settings(), look, operator_files());
-    warn_of(resolved);
-    return make_view(std::move(resolved), color, exposure, display, reference_white);
+    return make_view(resolved(), color, exposure, display, reference_white);
 }
 
 const OperatorSet& operator_files() {

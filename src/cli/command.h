@@ -41,15 +41,22 @@ struct ViewOptions {
 
     /// `name=value` texts as settings. @throws Error for one without `=`.
     [[nodiscard]] Settings settings() const;
+    /// The operator; its warning is printed. Reads its file.
+    /// @throws Error
+    [[nodiscard]] ResolvedOperator resolved() const;
     /// @throws Error
     [[nodiscard]] View view() const;
+    /// The same for an operator that is resolved already.
+    [[nodiscard]] View view(ResolvedOperator resolved) const;
     /// The same for a color instead of the name in `input`.
     [[nodiscard]] View view(const SourceColor& color) const;
 };
 
 /// The reader of .tone files and LUTs as operators, for all commands.
 [[nodiscard]] const OperatorSet& operator_files();
-/// resolve_picture_operator() with these, and the operator's warning, once for each text.
+/// Prints the operator's caution, each text once.
+void warn_of(const ResolvedOperator& op);
+/// resolve_picture_operator() with these, and the operator's caution.
 [[nodiscard]] ResolvedOperator resolve_for_command(const std::string& text,
                                                    const Settings& settings = {},
                                                    const std::string& look = {});

@@ -164,12 +164,6 @@ void replace_config(const ExtendedConfig& changed, const Options& options) {
         fmt::print("{:<28} {:<40} {:>9.1e} {:>9.1e}\n", v.display, v.view, v.max, v.p999);
 }
 
-/// With --into, displays are those of the other config.
-ConfigOptions without_displays(ConfigOptions options) {
-    options.displays.clear();
-    return options;
-}
-
 int run_config(Options& options) {
     ConfigOptions& wanted = options.config;
     if (options.operators.size() != options.names.size()) {
@@ -179,15 +173,12 @@ int run_config(Options& options) {
                         options.names.size(), options.operators.size()));
     }
     for (std::size_t i = 0; i < options.operators.size(); ++i)
-        wanted.custom.push_back({options.names[i], options.operators[i]});
+        wanted.custom.push_back(
+            {options.names[i], resolve_operator(options.operators[i], {}, {}, operator_files())});
     wanted.others = operator_files();
     redirect_opencolorio_messages([](const std::string& text) {
         if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
     });
-    if (!options.is_removed) {
-        for (const std::string& text : config_warnings(without_displays(wanted)))
-            warn(text);
-    }
     if (!options.into.empty()) {
         const ExtendedConfig changed = [&] {
             const ElapsedLine line("config");
@@ -200,6 +191,8 @@ int run_config(Options& options) {
             warn(fmt::format("{} has {} hard links: only this name gets the new contents",
                              changed.path, names));
         }
+        for (const std::string& text : changed.warnings)
+            warn(text);
         if (!changed.unchecked.empty()) warn(changed.unchecked);
         replace_config(changed, options);
         return kOk;
@@ -207,19 +200,21 @@ int run_config(Options& options) {
     if (options.folder.empty() && options.archive.empty())
         throw Error("config: -o is missing; expected -o FOLDER, --archive FILE or --into CONFIG");
     wanted.working = find_input_space(wanted.working).id;
+    const ConfigPlan plan(wanted);
+    for (const std::string& text : plan.warnings())
+        warn(text);
     const std::filesystem::path archive(options.archive);
     if (!options.archive.empty() && archive.extension() != ".ocioz") {
         throw Error("config: --archive is " + options.archive +
                     "; expected a name that ends in .ocioz");
     }
-    check_config_options(wanted);
     if (!options.folder.empty()) require_writable_folder(options.folder);
     if (!options.archive.empty())
         require_writable_folder(std::filesystem::absolute(archive).parent_path().string());
     const ResultLine result;
     const std::vector<GeneratedFile> files = [&] {
         const ElapsedLine line("config");
-        return make_config(wanted);
+        return make_config(plan);
     }();
     const auto tell = [&](const std::string& path, const std::vector<GeneratedFile>& written) {
         double bytes = 0;

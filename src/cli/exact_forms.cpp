@@ -41,7 +41,7 @@ std::string grade_of(double codes) {
 
 class Forms {
   public:
-    explicit Forms(const ViewOptions& options) : options_(options) {}
+    explicit Forms(const ViewOptions& options) : options_(options), op_(options.resolved()) {}
 
     std::vector<Form> of(const LutApplication& host) {
         std::vector<Form> forms;
@@ -56,13 +56,12 @@ class Forms {
     }
 
   private:
-    [[nodiscard]] View view(const std::string& op, const std::string& input,
+    [[nodiscard]] View view(const ResolvedOperator& op, const std::string& input,
                             const std::string& display) const {
         ViewOptions options = options_;
-        options.op = op;
         if (!options.given.contains("--input")) options.input = input;
         if (!options.given.contains("--display")) options.display = display;
-        return options.view();
+        return options.view(op);
     }
 
     /// The command line with the user's own options.
@@ -84,7 +83,7 @@ class Forms {
     Form chain(const LutApplication& host) {
         LutRequest request;
         request.encoding = parse_input_encoding("linear");
-        request.view = view(options_.op, request.encoding.default_input, host.display);
+        request.view = view(op_, request.encoding.default_input, host.display);
         request.format = LutFormat::ctf;
         if (!is_lut_chain(request)) {
             return {0, "clf or ctf, scene-linear: a 1D table",
@@ -100,8 +99,7 @@ class Forms {
     Form table(const LutApplication& host) {
         LutRequest request;
         request.encoding = parse_input_encoding(host.encoding);
-        const Operator& op = *resolve_operator(options_.op, {}, {}, operator_files()).op;
-        request.view = view(options_.op, lut_input_of(host, op), host.display);
+        request.view = view(op_, lut_input_of(host, *op_.op), host.display);
         request.format = host.format;
         const bool is_curve = host.takes_any_primaries && is_per_channel(build_view(request.view));
         if (!is_curve) {
@@ -127,17 +125,19 @@ class Forms {
 
     /// A shader of a grid is the formula that the grid samples, if it has one.
     Form shader(const ShaderApplication& application) {
-        const View own = view(options_.op, "lin_rec709", application.display);
+        const View own = view(op_, "lin_rec709", application.display);
         const std::string language = application.title + ", shader";
         if (!reads_lattice(own))
             return {0, language,
                     command("shader", options_.op, application.id, application.extension)};
-        const std::string op = own.op.op->id + ":formula";
-        const bool has_formula =
-            std::any_of(own.op.op->presets.begin(), own.op.op->presets.end(),
-                        [](const Preset& preset) { return preset.id == "formula"; });
-        if (!has_formula) return {std::numeric_limits<double>::infinity(), "", ""};
-        const View formula = view(op, "lin_rec709", application.display);
+        const std::vector<Preset>& presets = op_.op->presets;
+        const auto preset = std::find_if(presets.begin(), presets.end(),
+                                         [](const Preset& p) { return p.id == "formula"; });
+        if (preset == presets.end()) return {std::numeric_limits<double>::infinity(), "", ""};
+        ResolvedOperator by_formula =
+            resolve(*op_.op, &*preset, options_.settings(), options_.look);
+        by_formula.owner = op_.owner;
+        const View formula = view(by_formula, "lin_rec709", application.display);
         const std::vector<float> light = photograph_light(find_input_space("lin_rec709").primaries);
         std::vector<double> shown(light.size());
         std::vector<double> wanted(light.size());
@@ -145,10 +145,11 @@ class Forms {
         ReferenceEngine(build_view(own)).run_rgb(light.data(), wanted.data(), light.size() / 3);
         const PhotographError error = photograph_error(own, shown, wanted, nullptr);
         return {error.p999, language + " of the formula",
-                command("shader", op, application.id, application.extension)};
+                command("shader", op_.op->id + ":formula", application.id, application.extension)};
     }
 
     const ViewOptions& options_;
+    const ResolvedOperator op_;
     std::map<std::string, double> known_;  // errors of tables
     std::optional<LutChain> chain_;        // the same for all applications: their display is sRGB
 };

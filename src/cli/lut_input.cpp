@@ -35,7 +35,8 @@ namespace {
 
 /// The part of a file from Tonewright that has its text.
 /// @throws FileError  not a regular file, which may have no end
-std::string text_of_lut(const LutOptions& options) {
+const std::string& text_of_lut(const LutOptions& options) {
+    if (options.text) return *options.text;
     require_regular_file(options.file);
     // Our text is at the beginning, but in a device link it comes after the table.
     constexpr std::size_t kBeginning = 1U << 16U;
@@ -45,7 +46,8 @@ std::string text_of_lut(const LutOptions& options) {
     std::ifstream file(options.file, std::ios::binary);
     file.read(contents.data(), static_cast<std::streamsize>(contents.size()));
     contents.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-    return contents;
+    options.text = std::move(contents);
+    return *options.text;
 }
 
 /// The stages before the LUT, with --input-encoding.

@@ -17,6 +17,9 @@ struct LutOptions {
     std::string interpolation = "auto";
     std::string encoding;
     std::string space;
+    /// The part of the file that may state its input, once it was read. (OpenColorIO opens the file
+    /// again, for the table.)
+    mutable std::optional<std::string> text = {};
 };
 
 /// @param read_picture  reads a LUT that is a picture

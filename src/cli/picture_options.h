@@ -164,7 +164,7 @@ struct ReportPictureOptions {
     int width = 960;
     PictureChoice choice;
     /// Local operators, which the page cannot run.
-    std::vector<std::string> local_operators;
+    std::vector<ResolvedOperator> local_operators;
 };
 struct ReportPicture {
     std::string name;

@@ -144,11 +144,9 @@ PlotScale Readings::scale(double brightest) const {
 /// `--set` and `--look` apply to all operators; an operator's own settings take precedence.
 View view_of(const PlotOptions& options, const std::string& text) {
     const ResolvedOperator own = resolve_operator(text, {}, {}, operator_files());
-    Settings settings = own.settings;
-    settings.merge(options.settings());
-    const std::string& look = own.params.look();
-    return make_view(resolve_for_command(own.name(), settings, look.empty() ? options.look : look),
-                     options.input, options.exposure, options.display, options.reference_white);
+    const ResolvedOperator op = with_defaults(own, options.settings(), options.look);
+    warn_of(op);
+    return make_view(op, options.input, options.exposure, options.display, options.reference_white);
 }
 
 /// "Hable (Uncharted 2), white=4"

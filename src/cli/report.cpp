@@ -153,15 +153,14 @@ class PageContents {
         wanted.choice = options_.choice;
         for (const ResolvedOperator& op : operators_) {
             if (!op.op->is_local()) continue;
-            wanted.local_operators.push_back(operator_text(op));
+            wanted.local_operators.push_back(op);
         }
         ReportPicture picture = picture_commands().read_report_picture(wanted);
         const std::string name = fmt::format("picture{}", pictures_.size());
         Json shown = Json::object();
-        const std::vector<std::string>& local = wanted.local_operators;
-        for (std::size_t i = 0; i < local.size(); ++i) {
+        for (std::size_t i = 0; i < wanted.local_operators.size(); ++i) {
             const std::string file = fmt::format("{}_{}.png", name, i);
-            shown.add(local[i], file);
+            shown.add(operator_text(wanted.local_operators[i]), file);
             files_.push_back({file, std::move(picture.shown[i])});
         }
         files_.push_back({name + ".exr", std::move(picture.exr)});
@@ -346,9 +345,8 @@ class PageContents {
         Json rows = Json::array();
         if (options_.no_parity) return rows;
         VerifyOptions verify_options;
-        verify_options.others = operator_files();
         for (const ResolvedOperator& op : operators_) {
-            if (!op.op->is_local()) verify_options.operators.push_back(operator_text(op));
+            if (!op.op->is_local()) verify_options.operators.push_back(op);
         }
         verify_options.lattice_edge = 9;
         verify_options.random_count = 10000;

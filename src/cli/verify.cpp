@@ -27,6 +27,7 @@ namespace {
 
 struct Options {
     VerifyOptions verify;
+    std::vector<std::string> operators;
     std::string picture;
     std::string lut;
     bool json = false;
@@ -146,13 +147,13 @@ int run_verify(Options& options) {
                                          [](const std::string& path) {
                                              return picture_commands().read_lut(path);
                                          }),
-                                verify_options.operators),
+                                resolve_operators(options.operators)),
                       options.json);
         return kOk;
     }
-    verify_options.others = operator_files();
-    for (const std::string& name : verify_options.operators) {
-        if (names_a_file(name)) (void)resolve_for_command(name);
+    verify_options.operators = resolve_operators(options.operators, operator_files());
+    for (const ResolvedOperator& op : verify_options.operators) {
+        if (!op.op->file.empty()) warn_of(op);
     }
     verify_options.with_gpu = !options.no_gpu;
     if (options.quick) {
@@ -245,7 +246,7 @@ void add_verify(CommandLine& program) {
     const char* const how = "Measurement";
     const char* const output = "Output";
     command
-        .add("operators", options->verify.operators,
+        .add("operators", options->operators,
              "operators (default: all with their presets and looks, or the views of the config)")
         .suggest(suggest_operators);
     command

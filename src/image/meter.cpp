@@ -129,19 +129,15 @@ static TonemapOptions tonemap_options(const MeterOptions& options) {
     return result;
 }
 
-SceneMeter measure_file(const std::string& path, const MeterOptions& options,
-                        SceneMeter::Figures figures, int nthreads, std::size_t batch_bytes) {
-    const auto open = [&] {
-        PictureReader reader(path, nthreads, options.read);
-        reader.convert_colors(tonemap_options(options));
-        return reader.spec();
-    };
-    const ImageSpec spec = open();
+/// Reads the rows once, or twice if alpha must be ignored.
+static SceneMeter measure_rows(PictureReader& reader, const MeterOptions& options,
+                               SceneMeter::Figures figures, int nthreads,
+                               std::size_t batch_bytes) {
+    reader.convert_colors(tonemap_options(options));
+    const ImageSpec& spec = reader.spec();
     check_pixel_type("source", spec.format);
     const ROI window = measured_window(spec, options);
     return measure_picture(spec, options, figures, nthreads, [&](SceneMeter& meter) {
-        PictureReader reader(path, nthreads, options.read);
-        reader.convert_colors(tonemap_options(options));
         if (spec.depth > 1) {
             const ImageBuf volume = reader.read_all();
             pass_over(volume, options)(meter);
@@ -163,6 +159,12 @@ SceneMeter measure_file(const std::string& path, const MeterOptions& options,
             meter.add(part, roi);
         }
     });
+}
+
+SceneMeter measure_file(const std::string& path, const MeterOptions& options,
+                        SceneMeter::Figures figures, int nthreads, std::size_t batch_bytes) {
+    PictureReader reader(path, nthreads, options.read);
+    return measure_rows(reader, options, figures, nthreads, batch_bytes);
 }
 
 MeterOptions meter_options(const TonemapOptions& options) {
@@ -200,18 +202,19 @@ Metering meter(const ImageBuf& src, const MeterOptions& options, int nthreads) {
 
 Metering meter_file(const std::string& path, const MeterOptions& options, int nthreads) {
     check_meter_options(options);
-    const ImageSpec spec = about_picture(path, [&] {
-        const PictureReader reader(path, nthreads, options.read);
-        report_header(reader.spec(), options.input, options.read);
-        return reader.spec();
+    std::optional<PictureReader> reader;
+    about_picture(path, [&] {
+        reader.emplace(path, nthreads, options.read);
+        report_header(reader->spec(), options.input, options.read);
     });
     try {
-        require_pixels(spec, options);
+        require_pixels(reader->spec(), options);
     } catch (const Error& e) {
         throw Error(within(path, e.problem()));
     }
     return about_picture(path, [&] {
-        return measure_file(path, options, SceneMeter::Figures::all, nthreads).metering();
+        return measure_rows(*reader, options, SceneMeter::Figures::all, nthreads, kBatchBytes)
+            .metering();
     });
 }
 

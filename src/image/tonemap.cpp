@@ -77,29 +77,16 @@ ImageSpec result_spec(const ImageSpec& source, bool gray_becomes_color) {
     return spec;
 }
 
-ResolvedOperator operator_of(const TonemapOptions& options) {
-    return resolve_picture_operator(options.op, options.settings, options.look, options.others);
-}
-
-/// The same options, with the operator's text split into its parts.
-TonemapOptions in_places(TonemapOptions options) {
-    const ResolvedOperator op = operator_of(options);
-    options.op = op.name();
-    options.settings = op.settings;
-    options.look = op.params.look();
-    return options;
-}
-
-View view_of(const TonemapOptions& options, const Settings& settings, const SourceColor& source) {
-    return make_view(resolve_picture_operator(options.op, settings, options.look, options.others),
-                     in_units(source, options.input_units), options.exposure_stops, options.display,
-                     options.reference_white);
+View view_of(const TonemapOptions& options, const SourceColor& source) {
+    return make_view(options.op, in_units(source, options.input_units), options.exposure_stops,
+                     options.display, options.reference_white);
 }
 
 /// True if some of the operator's parameters come from a picture.
 bool depends_on_picture(const TonemapOptions& options) {
+    if (!options.op.op) fail("op is missing; expected a resolved operator");
     return options.statistics == TonemapOptions::Statistics::from_picture &&
-           settings_for_picture(operator_of(options), {}).size() > options.settings.size();
+           takes_statistics(options.op);
 }
 
 /// Planar colors with strides, as in SimdEngine::run(). In and out may be the same.
@@ -312,14 +299,14 @@ struct Prepared {
 
 struct Tonemapper::State {
     explicit State(const TonemapOptions& o)
-        : options(in_places(o)),
+        : options(o),
           depends_on_picture(tonewright::depends_on_picture(options)),
-          programs_(std::make_shared<Programs>(kMostPrepared)) {
-        if (depends_on_picture) statistics_ = live_statistics(operator_of(options));
+          programs_(std::make_shared<BoundedCache<ProgramKey, Prepared>>(kMostPrepared)) {
+        if (depends_on_picture) statistics_ = live_statistics(options.op);
         // Reports wrong options before there is a picture, which may say that it is absolute.
         SourceColor source = source_color({}, options.input);
         source.is_absolute = source.is_absolute || is_same_name(options.input, kAutoInput);
-        const View view = view_of(options, options.settings, source);
+        const View view = view_of(options, source);
         check_mix(options.mix, view);
         is_local = view.op.op->is_local();
     }
@@ -337,13 +324,10 @@ struct Tonemapper::State {
     /// For pictures with these statistics, with the same programs.
     State(const State& other, const SceneStatistics& statistics)
         : State(other, other.options.exposure_stops) {
-        const ResolvedOperator op = operator_of(options);
-        if (statistics_.empty()) statistics_ = live_statistics(op);
-        options.settings = settings_for_picture(op, statistics);
+        if (statistics_.empty()) statistics_ = live_statistics(options.op);
+        options.op = resolve_for_picture(options.op, statistics);
         options.statistics = TonemapOptions::Statistics::defaults;
         depends_on_picture = false;
-        // Reports wrong statistics.
-        (void)operator_of(options);
     }
 
     TonemapOptions options;
@@ -360,10 +344,17 @@ struct Tonemapper::State {
 
     /// Pictures of one shot are of one kind.
     static constexpr std::size_t kMostPrepared = 8;
-    using Programs = BoundedCache<std::string, Prepared>;
+    /// What a program of the operator depends on beside the options that never change.
+    struct ProgramKey {
+        std::string input;
+        std::optional<double> fixed_exposure;
+        /// Of statistics that are live, the names alone.
+        Settings settings;
+        bool operator==(const ProgramKey&) const = default;
+    };
     LiveUniforms statistics_;
-    std::shared_ptr<Programs> programs_;        // by input space, and by what is not live
-    mutable Programs prepared_{kMostPrepared};  // by input space
+    std::shared_ptr<BoundedCache<ProgramKey, Prepared>> programs_;
+    mutable BoundedCache<std::string, Prepared> prepared_{kMostPrepared};  // by input space
 };
 
 namespace {
@@ -687,17 +678,16 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
 
 std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColor& source) const {
     return prepared_.get(source.name, [&] {
-        std::string program = source.name;
+        ProgramKey key = {source.name, {}, options.op.settings};
         if (!is_live_exposure(options.exposure_stops) && !is_local)
-            program += " " + shortest(options.exposure_stops);
-        for (const auto& [name, value] : options.settings)
-            program += " " + name + (statistics_.contains(name) ? "" : "=" + value);
-        const std::shared_ptr<const Prepared> compiled = programs_->get(program, [&] {
-            return Prepared(view_of(options, options.settings, source), statistics_, options.mix);
-        });
+            key.fixed_exposure = options.exposure_stops;
+        for (auto& [name, value] : key.settings) {
+            if (statistics_.contains(name)) value.clear();
+        }
+        const std::shared_ptr<const Prepared> compiled = programs_->get(
+            key, [&] { return Prepared(view_of(options, source), statistics_, options.mix); });
         // Making a view takes longer than all other steps, so only other statistics need a new one.
-        View view =
-            statistics_.empty() ? compiled->view : view_of(options, options.settings, source);
+        View view = statistics_.empty() ? compiled->view : view_of(options, source);
         view.exposure_stops = options.exposure_stops;
         return Prepared(*compiled, std::move(view));
     });

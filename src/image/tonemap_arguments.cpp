@@ -52,14 +52,22 @@ std::string tonemap_argument_choices() {
     return join_choices(choices);
 }
 
-void set_tonemap_argument(TonemapOptions& options, std::string_view name,
+TonemapOptions resolve_arguments(const TonemapArguments& arguments, const OperatorSet& operators) {
+    TonemapOptions options = arguments.others;
+    options.op =
+        resolve_picture_operator(arguments.op, arguments.settings, arguments.look, operators);
+    return options;
+}
+
+void set_tonemap_argument(TonemapArguments& arguments, std::string_view name,
                           const std::string& value) {
+    TonemapOptions& options = arguments.others;
     using Unpremult = TonemapOptions::Unpremult;
     using Statistics = TonemapOptions::Statistics;
     if (name == "op") {
-        options.op = value;
+        arguments.op = value;
     } else if (name == "look") {
-        options.look = value;
+        arguments.look = value;
     } else if (name == "exposure") {
         options.exposure_stops = parse_number(name, value);
     } else if (name == "input") {
@@ -81,7 +89,7 @@ void set_tonemap_argument(TonemapOptions& options, std::string_view name,
             name, value,
             {{"picture", Statistics::from_picture}, {"defaults", Statistics::defaults}});
     } else if (name.starts_with(kParameter) && name.size() > kParameter.size()) {
-        options.settings[std::string(name.substr(kParameter.size()))] = value;
+        arguments.settings[std::string(name.substr(kParameter.size()))] = value;
     } else {
         throw Error("argument is " + std::string(name) + "; expected " +
                     tonemap_argument_choices() + did_you_mean(name, tonemap_argument_names()));

@@ -42,8 +42,7 @@ using OIIO::ImageSpec;
 /// Provenance of the result, without date and machine: the same run writes the same bytes.
 /// @param resize  @see ReadOptions::resize
 void say_how(ImageSpec& picture, const TonemapOptions& options, const std::string& resize) {
-    const ResolvedOperator op =
-        resolve_picture_operator(options.op, options.settings, options.look, options.others);
+    const std::string op = operator_text(options.op);
     const std::string exposure = shortest(options.exposure_stops);
     std::string display = options.display;
     if (options.reference_white != kReferenceWhite)
@@ -51,10 +50,10 @@ void say_how(ImageSpec& picture, const TonemapOptions& options, const std::strin
     if (options.input_units == InputUnits::luminance) display += ", input in cd/m2";
     const std::string mix = options.mix == 1 ? "" : ", mix " + shortest(options.mix);
     const std::string size = resize.empty() ? "" : ", resize " + resize;
-    picture.attribute("Software", fmt::format("Tonewright {}: {}, exposure {}{}{}, display {}",
-                                              TONEWRIGHT_VERSION, operator_text(op), exposure, mix,
-                                              size, display));
-    picture.attribute("tonewright:operator", operator_text(op));
+    picture.attribute("Software",
+                      fmt::format("Tonewright {}: {}, exposure {}{}{}, display {}",
+                                  TONEWRIGHT_VERSION, op, exposure, mix, size, display));
+    picture.attribute("tonewright:operator", op);
     picture.attribute("tonewright:exposure", exposure);
     // The source may be a picture that another run resized.
     erase_attributes(picture, "tonewright:resize");
@@ -256,8 +255,7 @@ bool expects_a_scene(const ResolvedOperator& op) {
 
 std::string finished_warning(const ImageSpec& spec, const TonemapOptions& options) {
     if (!is_same_name(options.input, kAutoInput) || options.mix == 0) return {};
-    const ResolvedOperator op =
-        resolve_picture_operator(options.op, options.settings, options.look, options.others);
+    const ResolvedOperator& op = options.op;
     if (!expects_a_scene(op)) return {};
     const PictureDescription said = describe_picture(spec, options.input);
     if (!is_for_display(said.color)) return {};
@@ -278,6 +276,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     check_pixel_type("source", reader.spec().format);
     (void)channel_layout(reader.spec());
     report_header(reader.spec(), tonemapper.options().input, read);
+    if (read.header) read.header(reader.spec());
     if (read.warn) {
         const std::string text = finished_warning(reader.spec(), tonemapper.options());
         if (!text.empty()) read.warn(text);

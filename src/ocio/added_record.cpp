@@ -108,7 +108,7 @@ std::optional<AddedRecord> AddedRecord::find(const std::string& config,
         record.options.displays = texts(options["displays"]);
         record.options.looks = texts(options["looks"]);
         for (const YAML::Node& custom : options["operators"])
-            record.options.custom.push_back(
+            record.custom.push_back(
                 {custom["name"].as<std::string>(), custom["operator"].as<std::string>()});
         for (const YAML::Node& stops : options["exposures"])
             record.options.exposure_stops.push_back(stops.as<double>());
@@ -141,10 +141,10 @@ std::string AddedRecord::text(const std::string& config_text) const {
     list("displays", options.displays);
     list("looks", options.looks);
     out << YAML::Key << "operators" << YAML::Value << YAML::BeginSeq;
-    for (const auto& custom : options.custom) {
+    for (const CustomView& view : custom) {
         out << YAML::BeginMap << YAML::Key << "name" << YAML::Value << YAML::DoubleQuoted
-            << custom.name << YAML::Key << "operator" << YAML::Value << YAML::DoubleQuoted
-            << custom.op << YAML::EndMap;
+            << view.name << YAML::Key << "operator" << YAML::Value << YAML::DoubleQuoted << view.op
+            << YAML::EndMap;
     }
     out << YAML::EndSeq << YAML::Key << "exposures" << YAML::Value << YAML::BeginSeq;
     for (const double stops : options.exposure_stops)

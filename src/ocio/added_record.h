@@ -25,8 +25,13 @@ struct AddedRecord {
     std::vector<Piece> pieces;
     /// Paths of the tables, relative to the config.
     std::vector<std::string> files;
-    /// Options of the last run.
+    /// Options of the last run, but for its custom views.
     ConfigOptions options;
+    struct CustomView {
+        std::string name;
+        std::string op;  // for resolve_operator()
+    };
+    std::vector<CustomView> custom;
 
     /// Its path beside the config: "tonewright/studio.ocio.yaml".
     [[nodiscard]] static std::string path_of(const std::string& config);

@@ -175,7 +175,7 @@ std::string config_space_name(std::string_view input_id) {
     return find_input_space(input_id).title;
 }
 
-void check_config_options(const ConfigOptions& options) {
+ConfigPlan::ConfigPlan(const ConfigOptions& options) : profiles_(options.profiles) {
     std::set<std::string> profiles;
     for (const std::string& profile : options.profiles) {
         if (profile != "2.0" && profile != "2.1" && profile != "2.5")
@@ -191,14 +191,16 @@ void check_config_options(const ConfigOptions& options) {
     }
     if (profiles.empty())
         throw Error(Problem{.value = "no profile", .expected = "2.0, 2.1 or 2.5"});
-    (void)make_config_model(options);
+    model_ = std::make_shared<const ConfigModel>(make_config_model(options));
 }
 
-std::vector<std::string> config_warnings(const ConfigOptions& options) {
+std::vector<std::string> ConfigPlan::warnings() const { return config_warnings(*model_); }
+
+std::vector<std::string> config_warnings(const ConfigModel& model) {
     std::vector<std::string> texts;
     std::vector<std::string> views;
     std::set<const Operator*> said;
-    for (const auto& view : make_config_model(options).views) {
+    for (const auto& view : model.views) {
         const std::string caution = view.op.caution();
         if (!caution.empty() && view.exposure_stops == 0) texts.push_back(caution);
         const std::string constants = stand_ins(view.op);
@@ -214,8 +216,11 @@ std::vector<std::string> config_warnings(const ConfigOptions& options) {
 }
 
 std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
-    check_config_options(options);
-    const ConfigModel model = make_config_model(options);
+    return make_config(ConfigPlan(options));
+}
+
+std::vector<GeneratedFile> make_config(const ConfigPlan& plan) {
+    const ConfigModel& model = plan.model();
     OCIO::ConfigRcPtr config = OCIO::Config::Create();
     config->setVersion(2, 1);
     config->setName(model.name.c_str());
@@ -241,7 +246,7 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
 
     std::vector<GeneratedFile> files;
     std::vector<GeneratedFile> texts;
-    for (const std::string& profile : options.profiles)
+    for (const std::string& profile : plan.profiles())
         texts.push_back(
             {texts.empty() ? "config.ocio" : "config-" + profile + ".ocio", builder.text(profile)});
     std::string manifest = "path,content_hash\n";
@@ -256,7 +261,7 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
         manifest += table.path + "," + content_hash(table.contents) + "\n";
     }
     files.push_back({"probe.csv", probe_csv(model, builder.largest_errors())});
-    files.push_back({"README.md", readme(model, options.profiles, builder.errors())});
+    files.push_back({"README.md", readme(model, plan.profiles(), builder.errors())});
     files.push_back({"MANIFEST.csv", manifest});
     files.insert(files.end(), texts.begin(), texts.end());
     return files;

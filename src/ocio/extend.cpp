@@ -413,6 +413,9 @@ ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
     // A user who adds an operator to a config wants that one only.
     if (options.views.empty() && !options.custom.empty()) options.views = {"none"};
     record.options = options;
+    record.custom.clear();
+    for (const ConfigOptions::CustomView& view : options.custom)
+        record.custom.push_back({view.name, operator_text(view.op)});
     const AnyConfig any = read_any_config(path, text);
     const OCIO::ConfigRcPtr& config = any.config;
     bool has_folder = false;
@@ -469,6 +472,7 @@ ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
     ExtendedConfig result;
     result.path = path;
     result.unchecked = describe_unchecked(any, path);
+    result.warnings = config_warnings(model);
     result.files = builder.tables();
     try {
         YamlText yaml(text);
@@ -601,6 +605,9 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
         ConfigOptions options = earlier.record.options;
         options.others = given.others;
         try {
+            for (const AddedRecord::CustomView& view : earlier.record.custom)
+                options.custom.push_back(
+                    {view.name, resolve_operator(view.op, {}, {}, options.others)});
             return extend(location, rest, options, {}, earlier);
         } catch (const FileError&) {
             throw;

@@ -451,10 +451,11 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
         add(view);
     }
     for (const auto& custom : options.custom) {
-        const ResolvedOperator op = resolve_operator(custom.op, {}, {}, options.others);
+        const ResolvedOperator& op = custom.op;
+        require_no_surroundings(*op.op);
         if (custom.name.empty())
-            throw Error(
-                Problem{.value = "the view of " + custom.op + " has no name", .expected = "one"});
+            throw Error(Problem{.value = "the view of " + operator_text(op) + " has no name",
+                                .expected = "one"});
         views.push_back({custom.name, op, description_of(*op.op) + " As " + op.label + "."});
     }
     if (views.empty())

@@ -87,6 +87,9 @@ struct ConfigModel {
 ///                use: over 63 bytes, duplicates, an alias that is a role.
 [[nodiscard]] TONEWRIGHT_API ConfigModel make_config_model(const ConfigOptions& options = {});
 
+/// @see ConfigPlan::warnings
+[[nodiscard]] std::vector<std::string> config_warnings(const ConfigModel& model);
+
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";
 inline constexpr const char* kRawView = "Raw";
 

@@ -145,7 +145,9 @@ std::string read_config_text(const std::string& path) {
 }
 
 OCIO::ConfigRcPtr read_config(const std::string& path) {
-    check_size(path, read_config_text(path));
+    const std::string text = read_config_text(path);
+    const bool is_archive = text.starts_with("PK");  // .ocioz: OpenColorIO 2.2 and newer open it
+    if (!is_archive) return read_config(path, text);
     return checked(path, [&] { return OCIO::Config::CreateFromFile(path.c_str()); });
 }
 

@@ -178,27 +178,41 @@ const Preset& find_preset(const Operator& op, std::string_view id) {
                 one_of(op, "presets", ids) + did_you_mean(id, ids));
 }
 
-Settings settings_for_picture(const ResolvedOperator& resolved, const SceneStatistics& statistics) {
-    const Preset* preset = resolved.preset;
+/// True if the user or the preset set the parameter.
+static bool is_set(const ResolvedOperator& resolved, const ParameterSpec& spec) {
+    return resolved.settings.contains(spec.name) ||
+           (resolved.preset && resolved.preset->settings.contains(spec.name));
+}
+
+bool takes_statistics(const ResolvedOperator& resolved) {
+    const std::vector<ParameterSpec>& all = resolved.op->parameters;
+    return std::any_of(all.begin(), all.end(), [&](const ParameterSpec& spec) {
+        return spec.from_picture && !is_set(resolved, spec);
+    });
+}
+
+ResolvedOperator resolve_for_picture(const ResolvedOperator& resolved,
+                                     const SceneStatistics& statistics) {
     Settings all = resolved.settings;
     for (const ParameterSpec& spec : resolved.op->parameters) {
-        if (!spec.from_picture || (preset && preset->settings.contains(spec.name))) continue;
+        if (!spec.from_picture || is_set(resolved, spec)) continue;
         const double value = spec.from_picture(statistics);
-        all.try_emplace(spec.name, shortest(std::clamp(value, spec.min, spec.max)));
+        all[spec.name] = shortest(std::clamp(value, spec.min, spec.max));
     }
-    return all;
+    ResolvedOperator result = resolve(*resolved.op, resolved.preset, all, resolved.params.look());
+    result.owner = resolved.owner;
+    return result;
 }
 
 ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
                                      const DisplayFacts& display) {
-    const Preset* preset = resolved.preset;
     Settings all = resolved.settings;
     for (const ParameterSpec& spec : resolved.op->parameters) {
-        if (!spec.from_display || (preset && preset->settings.contains(spec.name))) continue;
+        if (!spec.from_display || is_set(resolved, spec)) continue;
         const std::string decided = spec.from_display(display);
-        if (!decided.empty()) all.try_emplace(spec.name, decided);
+        if (!decided.empty()) all[spec.name] = decided;
     }
-    ResolvedOperator shown = resolve(*resolved.op, preset, all, resolved.params.look());
+    ResolvedOperator shown = resolve(*resolved.op, resolved.preset, all, resolved.params.look());
     shown.label = resolved.label;
     shown.settings = resolved.settings;
     shown.owner = resolved.owner;

@@ -62,10 +62,8 @@ class Opening {
 };
 thread_local bool Opening::is_open_ = false;
 
-TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config) {
-    TonemapOptions options;
-    static const OperatorSet files(table_reader(picture_table_reader()));
-    options.others = files;
+TonemapArguments parse_arguments(const Arguments& arguments, const ImageSpec& config) {
+    TonemapArguments options;
     // Settings of an application for the format: `tonewright:op` and so on.
     constexpr std::string_view kPrefix = "tonewright:";
     for (const OIIO::ParamValue& hint : config.extra_attribs) {
@@ -107,7 +105,7 @@ class TonemappedInput final : public ImageInput {
             const Opening opening(name);
             const Request request = parse_request(name);
             path_ = request.picture;
-            take_options(parse_options(request.arguments, config));
+            take_arguments(parse_arguments(request.arguments, config));
             picture_ = open_picture(path_, &config);
             go_to(0, 0);
         });
@@ -206,12 +204,13 @@ class TonemappedInput final : public ImageInput {
     }
 
     /// @throws Error  without anything of the operator's file in it
-    void take_options(const TonemapOptions& options) {
+    void take_arguments(const TonemapArguments& arguments) {
+        static const OperatorSet files(table_reader(picture_table_reader()));
         try {
-            tonemapper_.emplace(options);
+            tonemapper_.emplace(resolve_arguments(arguments, files));
         } catch (const FileError& e) {
-            std::vector<std::string> named = {options.op};
-            for (const auto& [name, value] : options.settings)
+            std::vector<std::string> named = {arguments.op};
+            for (const auto& [name, value] : arguments.settings)
                 named.push_back(value);
             throw FileError(without_contents(e.what(), named));
         }

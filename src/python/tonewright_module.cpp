@@ -138,30 +138,31 @@ const OperatorSet& operator_files() {
     return files;
 }
 
-/// Reports errors of the operator first, also a file that cannot be read.
-void check_operator(const TonemapOptions& options) {
-    const std::string caution =
-        resolve_picture_operator(options.op, options.settings, options.look, options.others)
-            .caution();
-    if (!caution.empty()) warn(caution);
-}
-
 /// `settings` is a dictionary of the operator's parameters.
 TonemapOptions parse_options(const std::string& op, const py::kwargs& arguments) {
-    TonemapOptions options;
-    options.op = text_of(py::str(op));
+    TonemapArguments texts;
+    texts.op = text_of(py::str(op));
     for (const auto& [key, value] : arguments) {
         const std::string name = py::str(key);
         if (name != "settings") {
-            set_tonemap_argument(options, name, text_of(value));
+            set_tonemap_argument(texts, name, text_of(value));
             continue;
         }
         if (value.is_none()) continue;
         for (const auto& [parameter, number] : value.cast<py::dict>())
-            options.settings[text_of(parameter)] = text_of(number);
+            texts.settings[text_of(parameter)] = text_of(number);
     }
-    options.others = operator_files();
-    check_operator(options);
+    TonemapOptions options = resolve_arguments(texts, operator_files());
+    const std::string caution = options.op.caution();
+    if (!caution.empty()) warn(caution);
+    return options;
+}
+
+/// The same, for what is not a picture.
+/// @throws Error  a local operator
+TonemapOptions parse_color_options(const std::string& op, const py::kwargs& arguments) {
+    TonemapOptions options = parse_options(op, arguments);
+    require_no_surroundings(*options.op.op);
     return options;
 }
 
@@ -326,13 +327,12 @@ py::array_t<Value> checked_colors(const py::object& given) {
 
 py::array evaluate_colors(const std::string& op, const py::object& colors,
                           const py::kwargs& arguments) {
-    const TonemapOptions options = parse_options(op, arguments);
+    const TonemapOptions options = parse_color_options(op, arguments);
     const SourceColor input = in_units(
         find_source_color(is_same_name(options.input, kAutoInput) ? "lin_rec709" : options.input),
         options.input_units);
-    const View view =
-        make_view(resolve_operator(options.op, options.settings, options.look, options.others),
-                  input, options.exposure_stops, options.display, options.reference_white);
+    const View view = make_view(options.op, input, options.exposure_stops, options.display,
+                                options.reference_white);
     const bool is_float = py::isinstance<py::array_t<float>>(colors);
     if (is_float) {
         const py::array_t<float> from = checked_colors<float>(colors);
@@ -450,7 +450,7 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
                    const std::optional<std::string>& format,
                    const std::optional<std::string>& input_encoding, std::optional<int> size,
                    std::optional<int> depth, const py::kwargs& arguments) {
-    TonemapOptions options = parse_options(op, arguments);
+    TonemapOptions options = parse_color_options(op, arguments);
     const LutApplication* reader = host.empty() ? nullptr : &find_lut_application(host);
     LutRequest request;
     std::optional<LutFormat> named;
@@ -463,15 +463,12 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     const bool is_own_encoding = reader && !input_encoding;
     const bool is_chain = is_own_encoding && reads_chains(*reader, request.format);
     if (is_same_name(options.input, kAutoInput)) {
-        options.input =
-            is_own_encoding && !is_chain
-                ? lut_input_of(*reader, *resolve_operator(options.op, {}, {}, options.others).op)
-                : request.encoding.default_input;
+        options.input = is_own_encoding && !is_chain ? lut_input_of(*reader, *options.op.op)
+                                                     : request.encoding.default_input;
     }
     if (reader && !arguments.contains("display")) options.display = reader->display;
-    request.view =
-        make_view(resolve_operator(options.op, options.settings, options.look, options.others),
-                  options.input, options.exposure_stops, options.display, options.reference_white);
+    request.view = make_view(options.op, options.input, options.exposure_stops, options.display,
+                             options.reference_white);
     if (reader && !format && !is_chain) {
         request.bits = reader->bits;
         if (!is_table_for(*reader, request.view)) {
@@ -633,13 +630,13 @@ py::dict meter_any(const py::object& image, const std::string& method, std::opti
                    const std::string& input, const std::string& input_units, double reference_white,
                    const std::string& unpremult, const std::string& subimage,
                    const std::string& layer, int nthreads, double max_pixels) {
-    TonemapOptions alpha;
+    TonemapArguments alpha;
     set_tonemap_argument(alpha, "unpremult", unpremult);
     MeterOptions options;
     options.input = input;
     options.input_units = parse_input_units(input_units);
     options.reference_white = reference_white;
-    options.unpremult = alpha.unpremult;
+    options.unpremult = alpha.others.unpremult;
     options.read = {.subimage = subimage, .layer = layer, .max_pixels = max_pixels};
     options.delta = delta;
     options.low_percentile = low;
@@ -686,14 +683,14 @@ void write_config(const std::string& folder, const std::vector<std::string>& pro
     options.working = find_input_space(working).id;
     options.exposure_stops = exposure_stops;
     for (const auto& [name, op] : custom)
-        options.custom.push_back({name, op});
-    check_config_options(options);
-    for (const std::string& text : config_warnings(options))
+        options.custom.push_back({name, resolve_operator(op, {}, {}, options.others)});
+    const ConfigPlan plan(options);
+    for (const std::string& text : plan.warnings())
         warn(text);
     const py::gil_scoped_release release;
     require_writable_folder(folder);
     with_memory_for(folder,
-                    [&] { write_generated_files(folder, make_config(options), "config.ocio"); });
+                    [&] { write_generated_files(folder, make_config(plan), "config.ocio"); });
 }
 
 py::list verify_operators(const std::vector<std::string>& operators,
@@ -701,8 +698,7 @@ py::list verify_operators(const std::vector<std::string>& operators,
                           const std::string& config, bool is_quick, bool with_gpu,
                           const std::vector<std::string>& shaders) {
     VerifyOptions options;
-    options.others = operator_files();
-    options.operators = operators;
+    options.operators = resolve_operators(operators, operator_files());
     options.displays = displays;
     options.input = input;
     options.config = config;

@@ -113,14 +113,6 @@ NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) 
     throw Error(problem);
 }
 
-const Operator& require_no_surroundings(const Operator& op) {
-    if (!op.is_local()) return op;
-    throw Error(
-        Problem{.what = "operator is " + op.id + ", a local operator, which needs a picture",
-                .expected = "an operator that <<list=operators>> does not mark as local, or "
-                            "<<task=apply>> with a picture"});
-}
-
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 /// True for a text that begins with `name=`, blanks before it.
@@ -241,6 +233,20 @@ void set_look(std::string& look, const Operator& op, std::string_view wanted) {
     look = wanted;
 }
 
+/// resolve(), whose error names where an unknown parameter is.
+ResolvedOperator resolve_helpfully(const Operator& op, const Preset* preset,
+                                   const Settings& settings, std::string_view look) {
+    try {
+        return resolve(op, preset, settings, look);
+    } catch (const Error& e) {
+        for (const auto& [name, value] : settings) {
+            if (const std::string note = elsewhere(op, name); !note.empty())
+                throw Error(e.text() + note);
+        }
+        throw;
+    }
+}
+
 ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
                               std::string_view look, bool takes_local, const OperatorSet& others) {
     // A path is followed by the same settings as a name.
@@ -260,7 +266,8 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
     } else {
         named = find_named(parts.front(), others);
     }
-    const Operator& op = takes_local ? *named.op : require_no_surroundings(*named.op);
+    const Operator& op = *named.op;
+    if (!takes_local) require_no_surroundings(op);
     Settings all;
     for (std::size_t i = 1; i < parts.size(); ++i) {
         const std::string& part = parts[i];
@@ -279,17 +286,7 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
     for (const auto& [name, value] : settings)
         add_setting(all, op, name, value);
     set_look(named.look, op, look);
-    ResolvedOperator resolved = [&] {
-        try {
-            return resolve(op, named.preset, all, named.look);
-        } catch (const Error& e) {
-            for (const auto& [name, value] : all) {
-                if (const std::string note = elsewhere(op, name); !note.empty())
-                    throw Error(e.text() + note);
-            }
-            throw;
-        }
-    }();
+    ResolvedOperator resolved = resolve_helpfully(op, named.preset, all, named.look);
     resolved.owner = named.owner;
     return resolved;
 }
@@ -305,7 +302,17 @@ const std::vector<Operator>& local_operators() {
 const Operator& find_picture_operator(std::string_view name) { return *find_named(name).op; }
 
 const Operator& find_operator(std::string_view name) {
-    return require_no_surroundings(find_picture_operator(name));
+    const Operator& op = find_picture_operator(name);
+    require_no_surroundings(op);
+    return op;
+}
+
+void require_no_surroundings(const Operator& op) {
+    if (!op.is_local()) return;
+    throw Error(
+        Problem{.what = "operator is " + op.id + ", a local operator, which needs a picture",
+                .expected = "an operator that <<list=operators>> does not mark as local, or "
+                            "<<task=apply>> with a picture"});
 }
 
 ResolvedOperator resolve_operator(std::string_view text, const Settings& settings,
@@ -316,6 +323,38 @@ ResolvedOperator resolve_operator(std::string_view text, const Settings& setting
 ResolvedOperator resolve_picture_operator(std::string_view text, const Settings& settings,
                                           std::string_view look, const OperatorSet& others) {
     return resolve_text(text, settings, look, true, others);
+}
+
+ResolvedOperator with_defaults(const ResolvedOperator& own, const Settings& settings,
+                               std::string_view look) {
+    Settings all;
+    for (const auto& [name, value] : settings)
+        add_setting(all, *own.op, name, value);
+    for (const auto& [name, value] : own.settings)
+        all[name] = value;
+    const std::string& own_look = own.params.look();
+    ResolvedOperator result =
+        resolve_helpfully(*own.op, own.preset, all, own_look.empty() ? look : own_look);
+    result.owner = own.owner;
+    return result;
+}
+
+std::vector<ResolvedOperator> resolve_operators(const std::vector<std::string>& texts,
+                                                const OperatorSet& others) {
+    std::vector<ResolvedOperator> operators;
+    bool has_all = false;
+    for (const std::string& text : texts) {
+        if (is_same_name(text, "all")) {
+            has_all = true;
+        } else {
+            operators.push_back(resolve_operator(text, {}, {}, others));
+        }
+    }
+    if (!has_all) return operators;
+    operators.clear();
+    for (const OperatorVariant& v : all_variants())
+        operators.push_back(resolve_operator(v.name, {}, v.look));
+    return operators;
 }
 
 bool names_a_file(std::string_view text) { return file_length(text) > 0; }

@@ -169,13 +169,9 @@ void measure(Candidate& candidate, const Shown& shown) {
 
 }  // namespace
 
-std::vector<LutMatch> match_lut(const LutFile& table, const std::vector<std::string>& operators,
-                                std::size_t count) {
-    std::vector<ResolvedOperator> chosen;
-    chosen.reserve(operators.size());
-    for (const std::string& text : operators)
-        chosen.push_back(resolve_operator(text));
-    if (operators.empty()) chosen = all_and_defects();
+std::vector<LutMatch> match_lut(const LutFile& table,
+                                const std::vector<ResolvedOperator>& operators, std::size_t count) {
+    const std::vector<ResolvedOperator> chosen = operators.empty() ? all_and_defects() : operators;
     // A few colors select the candidates for the full comparison.
     const auto by_mean = [](const Candidate& a, const Candidate& b) {
         return rank(a.match) < rank(b.match);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "base/strings.h"
 #include "measure/error_metric.h"
@@ -33,8 +34,9 @@ namespace fs = std::filesystem;
 /// A config in a temporary folder, which the destructor removes.
 class TemporaryConfig {
   public:
-    TemporaryConfig(const std::vector<std::string>& views, const OperatorSet& others) {
-        write_generated_files(folder_.path(), make_config({.views = views, .others = others}),
+    explicit TemporaryConfig(std::vector<ConfigOptions::CustomView> views) {
+        write_generated_files(folder_.path(),
+                              make_config({.views = {"none"}, .custom = std::move(views)}),
                               "config.ocio");
     }
     [[nodiscard]] const std::string& folder() const { return folder_.path(); }
@@ -417,24 +419,6 @@ std::string view_in_config(const OCIO::ConstConfigRcPtr& config, const View& vie
     return transform && *transform ? shown : "";
 }
 
-std::vector<ResolvedOperator> operators_of(const std::vector<std::string>& names,
-                                           const OperatorSet& others) {
-    std::vector<ResolvedOperator> operators;
-    bool has_all = names.empty();
-    for (const std::string& name : names) {
-        if (is_same_name(name, "all")) {
-            has_all = true;
-        } else {
-            operators.push_back(resolve_operator(name, {}, {}, others));
-        }
-    }
-    if (!has_all) return operators;
-    operators.clear();
-    for (const OperatorVariant& v : all_variants())
-        operators.push_back(resolve_operator(v.name, {}, v.look));
-    return operators;
-}
-
 constexpr double kTenBits = 1.0 / 1023;
 /// Drivers sum a row in any order, and round more often.
 constexpr double kGpuRounding = 0x1p-21;
@@ -467,7 +451,10 @@ VerifyResult measure_all(const VerifyOptions& options,
     const bool is_of_config = options.operators.empty() && !options.config.empty();
     OCIO::ConstConfigRcPtr config;
     if (!options.config.empty()) config = read_config(path_of_config(options.config));
-    const std::vector<ResolvedOperator> operators = operators_of(options.operators, options.others);
+    for (const ResolvedOperator& op : options.operators)
+        require_no_surroundings(*op.op);
+    const std::vector<ResolvedOperator> operators =
+        options.operators.empty() ? resolve_operators({"all"}) : options.operators;
     std::vector<std::string> displays = options.displays;
     if (displays.empty() && is_of_config) {
         for (const Display& display : all_displays())
@@ -509,12 +496,14 @@ VerifyResult measure_all(const VerifyOptions& options,
     }
     std::optional<TemporaryConfig> fresh;
     if (!config) {
-        std::vector<std::string> wanted;
-        for (const View& view : views) {
-            if (!view_name(view.op).empty()) wanted.push_back(operator_text(view.op));
+        std::vector<ConfigOptions::CustomView> wanted;
+        std::set<std::string> names;
+        for (const ResolvedOperator& op : operators) {
+            const std::string name = view_name(op);
+            if (!name.empty() && names.insert(name).second) wanted.push_back({name, op});
         }
-        if (wanted.empty()) wanted.push_back(views.front().op.op->name());
-        fresh.emplace(wanted, options.others);
+        if (wanted.empty()) wanted.push_back({operators.front().op->view, operators.front()});
+        fresh.emplace(wanted);
         config = read_config(path_of_config(fresh->folder()));
     }
 

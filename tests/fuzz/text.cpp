@@ -100,9 +100,9 @@ void read_number_cache(const std::string& text) {
 }
 
 void set_arguments(const Request& request) {
-    TonemapOptions options;
+    TonemapArguments arguments;
     for (const auto& [name, value] : request.arguments)
-        set_tonemap_argument(options, name, value);
+        set_tonemap_argument(arguments, name, value);
 }
 
 void read_request_name(const std::string& text) { set_arguments(parse_request(text)); }

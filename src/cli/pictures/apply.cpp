@@ -275,14 +275,14 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
 
 /// "render.exr (640 x 360 half, lin_rec709) -> out.png: AgX (agx_blender), exposure +1, sRGB,
 /// 0.12 s"
+/// @param header  none: another process tone mapped the picture, or it has a legend
 void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const ApplyOptions& given,
-                  const ResultLine& line) {
+                  const std::optional<OIIO::ImageSpec>& header, const ResultLine& line) {
     if (!says_what_was_done()) return;
     const TonemapOptions& options = tonemapper.options();
-    const ResolvedOperator op =
-        resolve_picture_operator(options.op, options.settings, options.look, options.others);
-    const PictureReader reader(file.in, 1, read_options_of(given.picture));
-    const OIIO::ImageSpec& spec = reader.spec();
+    const ResolvedOperator& op = options.op;
+    const OIIO::ImageSpec spec =
+        header ? *header : PictureReader(file.in, 1, read_options_of(given.picture)).spec();
     const PictureDescription said = describe_picture(spec, options.input);
     std::string text =
         fmt::format("apply: {} ({} x {} {}, {} by {}) -> {}: {} ({}), exposure {:+.3g}, display {}",
@@ -318,14 +318,11 @@ int run_on_files(ApplyOptions options) {
         throw Error("apply: --operator has no value; expected --operator NAME");
     ApplyFiles files = files_of(options);
     if (!options.lut.file.empty()) return apply_lut(options, files);
-    TonemapOptions tonemap;
-    tonemap.op = options.is_false_color ? "false_color" : options.op;
-    if (tonemap.op.empty()) tonemap.op = kDefaultOperator;
     take_lut_options("apply", options.lut, options, true);
-    tonemap.settings = options.settings();
-    tonemap.look = options.look;
-    tonemap.others = operator_files();
-    (void)resolve_for_command(tonemap.op, tonemap.settings, tonemap.look);
+    std::string op = options.is_false_color ? "false_color" : options.op;
+    if (op.empty()) op = kDefaultOperator;
+    TonemapOptions tonemap;
+    tonemap.op = resolve_for_command(op, options.settings(), options.look);
     tonemap.exposure_stops = options.exposure;
     tonemap.input = options.input;
     tonemap.display = options.display;
@@ -380,7 +377,9 @@ int run_on_files(ApplyOptions options) {
     Warnings warnings(file.out);
     write.warn = warnings.hearer();
     ReadMessages messages(file.in);
-    const ReadOptions read = messages.hearing(read_options_of(options));
+    std::optional<OIIO::ImageSpec> header;
+    ReadOptions read = messages.hearing(read_options_of(options));
+    read.header = [&](const OIIO::ImageSpec& spec) { header = spec; };
     const ResultLine result;
     std::vector<MeteredPicture> metered;
     try {
@@ -403,7 +402,7 @@ int run_on_files(ApplyOptions options) {
     warnings.print();
     warn_of_histograms(metered);
     tell_default();
-    print_result(file, tonemapper, options, result);
+    print_result(file, tonemapper, options, header, result);
     return kOk;
 }
 

@@ -49,14 +49,11 @@ struct Rendering {
 
 Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options) {
     TonemapOptions tonemap;
-    tonemap.op = op.name();
-    tonemap.settings = op.settings;
-    tonemap.look = op.params.look();
+    tonemap.op = op;
     tonemap.exposure_stops = options.exposure;
     tonemap.input = options.input;
     tonemap.input_units = parse_input_units(options.input_units);
     tonemap.reference_white = options.reference_white;
-    tonemap.others = operator_files();
     return {op, Tonemapper(tonemap)};
 }
 

@@ -76,14 +76,15 @@ ReportPicture read_report_picture(const ReportPictureOptions& options) {
     halves.set_pixels(halves.roi(), OIIO::TypeFloat, rgb.data());
     halves.get_pixels(halves.roi(), OIIO::TypeFloat, rgb.data());
     result.exr = encoded(rgb, result.width, result.height, "light.exr", OIIO::TypeHalf);
-    for (const std::string& op : options.local_operators) {
+    for (const ResolvedOperator& op : options.local_operators) {
         TonemapOptions tonemap_options;
         tonemap_options.op = op;
         tonemap_options.input = "lin_rec709";
         const OIIO::ImageBuf shown = tonemap(halves, tonemap_options);
         std::vector<float> codes(rgb.size());
         if (shown.has_error() || !shown.get_pixels(shown.roi(), OIIO::TypeFloat, codes.data()))
-            throw FileError(fmt::format("report: {}: {}", op, first_line(shown.geterror())));
+            throw FileError(
+                fmt::format("report: {}: {}", operator_text(op), first_line(shown.geterror())));
         result.shown.push_back(
             encoded(codes, result.width, result.height, "shown.png", OIIO::TypeUInt8));
     }

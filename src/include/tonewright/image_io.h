@@ -42,6 +42,8 @@ struct ReadOptions {
     /// Receives the choice of layer and subimage where there was one, one line without the name.
     /// @see render
     std::function<void(const std::string&)> note = {};
+    /// Receives the header of the picture that is tone mapped, before anything is converted.
+    std::function<void(const OIIO::ImageSpec&)> header = {};
 };
 
 /// Reads a whole picture into memory, in the pixel type of the file, at full resolution. The

@@ -27,10 +27,9 @@ struct LutMatch {
 
 /// Identifies the operator of a LUT. Compares its output with operators in every input encoding, in
 /// the encoding's own primaries and in Rec.709, and on SDR displays.
-/// @param operators  `id`, `id:preset`; empty: all, with their defaults, and the known defects
+/// @param operators  empty: all, with their defaults, and the known defects
 /// @param count      number of matches, the nearest first; a defect must be nearer by a margin
-/// @throws Error     an unknown operator
 [[nodiscard]] TONEWRIGHT_API std::vector<LutMatch> match_lut(
-    const LutFile& lut, const std::vector<std::string>& operators, std::size_t count = 5);
+    const LutFile& lut, const std::vector<ResolvedOperator>& operators, std::size_t count = 5);
 
 TONEWRIGHT_NAMESPACE_END

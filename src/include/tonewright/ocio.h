@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,14 +30,37 @@ struct ConfigOptions {
     /// Custom views, after the others.
     struct CustomView {
         std::string name;
-        /// `id[:preset][:parameter=value...]`
-        std::string op;
+        ResolvedOperator op;
     };
     std::vector<CustomView> custom = {};
     /// Adds every view again with these exposures, in stops: "AgX +1 stop".
     std::vector<double> exposure_stops = {};
-    /// Operators that the names above may refer to, and the reader of LUTs.
+    /// Operators that `views` may name, and the reader of LUTs.
     OperatorSet others = {};
+};
+
+struct ConfigModel;
+
+/// Contents of a config after its names are resolved. Files of operators are read here, and not
+/// again.
+class TONEWRIGHT_API ConfigPlan {
+  public:
+    /// @throws Error      unknown views, looks and displays, and names that break applications
+    /// (over
+    ///                    63 bytes, or duplicates)
+    /// @throws FileError  a file of an operator cannot be read
+    explicit ConfigPlan(const ConfigOptions& options = {});
+
+    /// Differences between the config and `tonewright apply`, one line each: operators that take
+    /// numbers from the picture have constants in a config. @see render
+    [[nodiscard]] std::vector<std::string> warnings() const;
+
+    [[nodiscard]] const ConfigModel& model() const { return *model_; }
+    [[nodiscard]] const std::vector<std::string>& profiles() const { return profiles_; }
+
+  private:
+    std::shared_ptr<const ConfigModel> model_;
+    std::vector<std::string> profiles_;
 };
 
 /// An OpenColorIO config: `config.ocio` and one file for every other profile, `luts/*.clf`,
@@ -47,18 +71,10 @@ struct ConfigOptions {
 /// Scene reference ACES2065-1, display reference CIE XYZ D65. Every view of an operator is a view
 /// transform and a view of every display. It is also a color space for applications that do not
 /// support views ("Output - AgX - sRGB"). Descriptions have the measured error.
-/// @throws Error  unknown views, looks and displays, and names that break applications (over 63
-///                bytes, or duplicates)
+[[nodiscard]] TONEWRIGHT_API std::vector<GeneratedFile> make_config(const ConfigPlan& plan);
+/// The same of a new plan. @throws Error  @see ConfigPlan
 [[nodiscard]] TONEWRIGHT_API std::vector<GeneratedFile> make_config(
     const ConfigOptions& options = {});
-
-/// Throws the errors of make_config() without computing or writing anything.
-TONEWRIGHT_API void check_config_options(const ConfigOptions& options);
-
-/// Differences between a config and `tonewright apply`, one line each: operators that take numbers
-/// from the picture have constants in a config. @see render
-/// @throws Error  as check_config_options()
-[[nodiscard]] TONEWRIGHT_API std::vector<std::string> config_warnings(const ConfigOptions& options);
 
 /// A view that was added to an existing config, and its errors against the double reference, over
 /// all of AP0.
@@ -97,6 +113,8 @@ struct ExtendedConfig {
     /// What `check` cannot run, because the profile of the config is newer than those that the
     /// linked OpenColorIO reads; empty: nothing. One line.
     std::string unchecked;
+    /// @see ConfigPlan::warnings
+    std::vector<std::string> warnings;
     /// Reads the written config with its tables. Checks that OpenColorIO accepts it, that all old
     /// spaces and views give the same numbers, and that the new views match the operators.
     /// @throws Error  a check fails
@@ -119,7 +137,7 @@ struct ExtendedConfig {
 
 /// Removes everything that extend_config() added.
 /// @throws FileError  the config cannot be read, nothing was added to it, or an added text was
-/// edited
+///                    edited
 [[nodiscard]] TONEWRIGHT_API ExtendedConfig reduce_config(const std::string& path);
 
 /// Passes OpenColorIO's messages to a function instead of standard error, each once and without its

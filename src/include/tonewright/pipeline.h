@@ -363,7 +363,8 @@ struct Operator {
 
 /// An operator with its parameters fixed.
 struct ResolvedOperator {
-    const Operator* op;
+    /// Null: none yet.
+    const Operator* op = nullptr;
     Params params;
     /// Name in reports: `id` or `id:preset`, with the settings that differ from the defaults.
     std::string label;
@@ -429,10 +430,12 @@ struct ResolvedOperator {
                                                       const Settings& settings,
                                                       std::string_view look);
 
-/// The operator's settings, and the values that a picture's statistics give to parameters that
-/// neither the settings nor the preset set.
-[[nodiscard]] TONEWRIGHT_API Settings settings_for_picture(const ResolvedOperator& resolved,
-                                                           const SceneStatistics& statistics);
+/// True if a picture's statistics decide parameters: neither the settings nor the preset set them.
+[[nodiscard]] TONEWRIGHT_API bool takes_statistics(const ResolvedOperator& resolved);
+/// The same operator with the values that a picture's statistics give to these parameters.
+/// @throws Error  they contradict the other settings
+[[nodiscard]] TONEWRIGHT_API ResolvedOperator
+resolve_for_picture(const ResolvedOperator& resolved, const SceneStatistics& statistics);
 
 /// The same operator for a display: parameters that neither the user nor the preset set and that a
 /// display decides get its values. The label stays.

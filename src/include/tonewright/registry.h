@@ -58,6 +58,8 @@ class TONEWRIGHT_API OperatorSet {
 [[nodiscard]] TONEWRIGHT_API const Operator& find_operator(std::string_view name);
 /// The same, but accepts local operators.
 [[nodiscard]] TONEWRIGHT_API const Operator& find_picture_operator(std::string_view name);
+/// @throws Error  a local operator, which looks at a pixel's surroundings
+TONEWRIGHT_API void require_no_surroundings(const Operator& op);
 
 /// Resolves a text `name[:preset][:parameter=value...][:look=id]`, or the name of a view with a
 /// look or a preset ("AgX Punchy"). A blank may replace the `:` before `parameter=`. Write `:`, a
@@ -84,6 +86,15 @@ class TONEWRIGHT_API OperatorSet {
 [[nodiscard]] TONEWRIGHT_API ResolvedOperator
 resolve_picture_operator(std::string_view text, const Settings& settings = {},
                          std::string_view look = {}, const OperatorSet& others = {});
+/// The operator with settings and a look for what it does not state itself.
+/// @throws Error  @see resolve_operator
+[[nodiscard]] TONEWRIGHT_API ResolvedOperator with_defaults(const ResolvedOperator& own,
+                                                            const Settings& settings,
+                                                            std::string_view look);
+/// The operators that the texts name; for `all`, every operator, preset and look instead.
+/// @throws Error  @see resolve_operator
+[[nodiscard]] TONEWRIGHT_API std::vector<ResolvedOperator> resolve_operators(
+    const std::vector<std::string>& texts, const OperatorSet& others = {});
 /// True if the text names a .tone file or a LUT.
 [[nodiscard]] TONEWRIGHT_API bool names_a_file(std::string_view text);
 /// True if the text names a LUT.

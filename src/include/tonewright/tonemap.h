@@ -28,7 +28,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// The input of a picture whose metadata states its color. @see TonemapOptions::input
 inline constexpr std::string_view kAutoInput = "auto";
 
-/// Options of tone mapping. Names and texts are those of the command line.
+/// Options of tone mapping. Names of inputs and displays are those of the command line.
 struct TonemapOptions {
     /// Treatment of associated color. A curve needs un-premultiplied color.
     enum class Unpremult : unsigned char {
@@ -41,7 +41,7 @@ struct TonemapOptions {
         no,
     };
     /// Source of the parameters that come from a picture (its largest luminance, ...), if neither
-    /// `settings` nor the preset sets them.
+    /// the operator's settings nor its preset set them.
     enum class Statistics : unsigned char {
         /// measure_scene(), which takes one more pass. Other operators skip it.
         from_picture,
@@ -49,12 +49,9 @@ struct TonemapOptions {
         defaults,
     };
 
-    /// Operator id, optionally `:preset`. Local operators are accepted (local.h).
-    std::string op;
-    /// Operator parameters, name -> text.
-    Settings settings = {};
-    /// Look id of the operator, or empty.
-    std::string look = {};
+    /// The operator with its settings and look: resolve_picture_operator("agx_blender"). Local
+    /// operators are accepted (local.h). Its file is not read again.
+    ResolvedOperator op = {};
     /// Exposure before the operator, in stops, [-64, 64].
     double exposure_stops = 0;
     /// Color of the source: a name that find_source_color() knows, or `auto`: what the metadata
@@ -78,8 +75,6 @@ struct TonemapOptions {
     /// Dithers 8-bit files by half a code value: sets `oiio:dither`, which OIIO's writers follow.
     bool dither = false;
     Statistics statistics = Statistics::from_picture;
-    /// Operators that `op` may name beside the built-in ones, and the reader of LUTs.
-    OperatorSet others = {};
 };
 
 /// Measures the statistics of a picture, for operators whose parameters come from it.
@@ -117,7 +112,8 @@ measure_scene(const OIIO::ImageBuf& src, std::string_view input = kAutoInput,
 /// flicker: give it the statistics of one frame, with_statistics(measure_scene(frame)).
 class TONEWRIGHT_API Tonemapper {
   public:
-    /// @throws Error  unknown name or bad value among the options, with the nearest name
+    /// @throws Error  unknown name or bad value among the options, with the nearest name; no
+    /// operator
     explicit Tonemapper(const TonemapOptions& options);
     ~Tonemapper();
     Tonemapper(Tonemapper&&) noexcept;
@@ -193,8 +189,7 @@ class TONEWRIGHT_API Tonemapper {
 /// @param roi       default: all. `[chbegin, chend)` counts the source's channels and must contain
 ///                  its color.
 /// @param nthreads  0: OIIO's `threads` attribute. The result does not depend on it.
-/// @param progress  called with `progress_data` and the fraction done, (0, 1], about a hundred
-/// times,
+/// @param progress  called with `progress_data` and the fraction done, (0, 1], about 100 times,
 ///                  from one thread at a time, which may be one of OIIO's. If it returns true, the
 ///                  work stops: the error is "canceled", and some of the pixels are written.
 /// @returns         false on failure. Then `dst` has the error, in one line, and its pixels are

@@ -13,9 +13,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Backends and samples of a comparison with the reference.
 struct VerifyOptions {
-    /// As resolve_operator() takes them. Empty or `all`: every operator, preset and look. Empty
-    /// with a config: the operators of its views.
-    std::vector<std::string> operators;
+    /// Empty: every operator, preset and look; with a config, the operators of its views.
+    std::vector<ResolvedOperator> operators;
     /// Empty: sRGB; with a config and without operators: all displays of the config.
     std::vector<std::string> displays;
     std::string input = "lin_rec709";
@@ -34,8 +33,6 @@ struct VerifyOptions {
     bool only_best_target = false;
     /// Scene-linear RGB pixels to add to the sample set, in the input space.
     std::vector<float> picture;
-    /// Operators that `operators` may name, and the reader of LUTs.
-    OperatorSet others;
 };
 
 /// Errors of one backend of one view against the double reference, in display code values.
@@ -83,7 +80,8 @@ struct VerifyResult {
 /// Shaders run on OpenGL and OpenGL ES through EGL, with the C compiler `$CC` (else cc, gcc,
 /// clang), on OpenCL (DCTL), and on Dawn for Node.js (WGSL, HLSL), if TONEWRIGHT_NODE_MODULES names
 /// a folder with the packages webgpu and naga-wasm.
-/// @throws Error  unknown operators, displays, spaces, languages; FileError for the config folder
+/// @throws Error  a local operator; unknown displays, spaces, languages; FileError for the config
+/// folder
 [[nodiscard]] TONEWRIGHT_API VerifyResult
 verify(const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
 

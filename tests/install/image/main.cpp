@@ -15,7 +15,7 @@ int main() {
             picture.setpixel(x, y, gray);
     }
     tonewright::TonemapOptions options;
-    options.op = "hable";
+    options.op = tonewright::resolve_picture_operator("hable");
     options.display = "linear";
     const OIIO::ImageBuf shown = tonewright::tonemap(picture, options);
     if (shown.has_error()) {

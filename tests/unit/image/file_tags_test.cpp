@@ -44,7 +44,7 @@ std::vector<std::string> warnings_of(const ImageBuf& picture, const std::string&
 ImageBuf shown_on(const std::string& display, int channels = 3) {
     const ImageBuf scene =
         channels == 3 ? make_rgb(24, 17) : make_picture(make_spec(24, 17, {"Y"}, TypeDesc::FLOAT));
-    return tonemap(scene, {.op = "clamp", .display = display});
+    return tonemap(scene, {.op = resolve_picture_operator("clamp"), .display = display});
 }
 
 std::string icc_of(const std::string& path) {
@@ -370,12 +370,15 @@ TEST(FileTags, EveryFormatThatIsWrittenIsReadAndToneMapped) {
         ASSERT_TRUE(picture.write(path)) << format << ": " << picture.geterror();
         const ImageBuf back = read_image(path);
         EXPECT_EQ(static_cast<int>(back.spec().channelnames.size()), back.nchannels()) << format;
-        const Tonemapper tonemapper({.op = "hable", .input = "lin_rec709"});
+        const Tonemapper tonemapper(
+            {.op = resolve_picture_operator("hable"), .input = "lin_rec709"});
         tonemap_file(tonemapper, path, folder.file("shown.exr"));
         EXPECT_EQ(read_image(folder.file("shown.exr")).spec().width, 64) << format;
         // The library, with OIIO's own reader.
         const ImageBuf lazy(path);
-        EXPECT_FALSE(tonemap(lazy, {.op = "hable", .input = "lin_rec709"}).has_error()) << format;
+        EXPECT_FALSE(tonemap(lazy, {.op = resolve_picture_operator("hable"), .input = "lin_rec709"})
+                         .has_error())
+            << format;
         tonemap_file(tonemapper, path, out);
         EXPECT_EQ(read_image(out).spec().height, 48) << format;
         ++count;

@@ -20,7 +20,7 @@ using OIIO::ROI;
 
 TonemapOptions options_of(const Operator& op, const std::string& display = "linear") {
     TonemapOptions options;
-    options.op = op.id;
+    options.op = resolve_picture_operator(op.id);
     options.display = display;
     return options;
 }
@@ -158,10 +158,10 @@ TEST_P(LocalPicture, FilesAreThoseOfTheLibrary) {
 TEST(ExposureFusion, WithoutOtherExposuresItIsItsCurve) {
     const ImageBuf source = make_rgb(30, 20, OIIO::TypeDesc::FLOAT, 6);
     TonemapOptions options = {
-        .op = "exposure_fusion",
-        .settings = {{"shadows", "0"}, {"highlights", "0"}, {"exposure", "1"}}};
+        .op = resolve_picture_operator("exposure_fusion",
+                                       {{"shadows", "0"}, {"highlights", "0"}, {"exposure", "1"}})};
     const ImageBuf fused = tonemap(source, options);
-    const ImageBuf curve = tonemap(source, {.op = "aces_hill:threejs"});
+    const ImageBuf curve = tonemap(source, {.op = resolve_picture_operator("aces_hill:threejs")});
     for (int y = 0; y < 20; ++y) {
         for (int x = 0; x < 30; ++x) {
             for (std::size_t c = 0; c < 3; ++c)

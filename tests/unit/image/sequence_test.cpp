@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tonewright/sequence.h"
+#include "tonewright/registry.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -58,7 +59,7 @@ class Sequence : public testing::Test {
         options.write.type = type;
         options.skip_existing = true;
         options.nthreads = 3;
-        tonemap_files(Tonemapper({.op = op}), again, options);
+        tonemap_files(Tonemapper({.op = resolve_picture_operator(op)}), again, options);
         std::vector<int> result;
         for (std::size_t i = 0; i < again.size(); ++i) {
             EXPECT_FALSE(again[i].problem);
@@ -80,7 +81,7 @@ TEST_F(Sequence, OneFrameThatFailsDoesNotStopTheOthers) {
     const std::vector<FrameFiles> all = make_frames(7, ".png");
     fs::remove(all[2].in);
     write_image_atomically(make_picture(make_spec(40, 30, {"X", "Y"}, TypeDesc::HALF)), all[4].in);
-    const Tonemapper tonemapper({.op = "hable"});
+    const Tonemapper tonemapper({.op = resolve_picture_operator("hable")});
     for (const int threads : {1, 3, 16}) {
         for (const int jobs : {0, 1, 2, 20}) {
             std::vector<FrameFiles> frames = fresh(all);
@@ -162,7 +163,7 @@ TEST_F(Sequence, TheSameBytesAgainWithoutADate) {
         fs::last_write_time(hdr, std::chrono::file_clock::from_sys(
                                      std::chrono::sys_seconds(std::chrono::seconds(1000000000))));
         frames[0].in = hdr;
-        tonemap_files(Tonemapper({.op = "hable"}), frames);
+        tonemap_files(Tonemapper({.op = resolve_picture_operator("hable")}), frames);
         ASSERT_FALSE(frames[0].problem);
         const std::string date = read_image(frames[0].out).spec().get_string_attribute("DateTime");
         EXPECT_EQ(date, "2001:09:09 01:46:40") << extension;
@@ -211,7 +212,7 @@ TEST_F(Sequence, LeftoversOfKilledRunsAreRemoved) {
     for (const std::string& name : old)
         fs::last_write_time(folder_.file(name), fs::file_time_type::clock::now() - 25h);
     expected.insert(stay.begin(), stay.end());
-    tonemap_files(Tonemapper({.op = "hable"}), frames);
+    tonemap_files(Tonemapper({.op = resolve_picture_operator("hable")}), frames);
     EXPECT_EQ(names(), expected);
 }
 
@@ -220,7 +221,7 @@ TEST_F(Sequence, FilesThatMayNotBeWrittenStay) {
     std::vector<FrameFiles> frames = make_frames(1, ".png");
     std::ofstream(frames[0].out) << "old";
     fs::permissions(frames[0].out, fs::perms::owner_read);
-    tonemap_files(Tonemapper({.op = "hable"}), frames);
+    tonemap_files(Tonemapper({.op = resolve_picture_operator("hable")}), frames);
     ASSERT_TRUE(frames[0].problem);
     EXPECT_EQ(render(*frames[0].problem), frames[0].out + ": cannot write: Permission denied");
     EXPECT_EQ(bytes_of(frames[0].out), "old");

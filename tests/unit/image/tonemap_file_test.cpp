@@ -92,7 +92,7 @@ TEST_F(TonemapFile, BatchesAreSomeSixteenMegabytesOfWholeTiles) {
 TEST_F(TonemapFile, EqualsTheWholePicture) {
     const std::string in = folder_.file("a.exr");
     put(spec_of({"R", "G", "B"}), in);
-    const TonemapOptions options = {.op = "hable"};
+    const TonemapOptions options = {.op = resolve_picture_operator("hable")};
     expect_same(in, "half.exr", options, TypeDesc::HALF);
     expect_same(in, "float.exr", options);
     expect_same(in, "a.png", options, TypeDesc::UINT16);
@@ -107,7 +107,7 @@ TEST_F(TonemapFile, TilesAlphaAndOtherChannels) {
     spec.tile_height = 48;
     const std::string in = folder_.file("a.exr");
     put(spec, in, 1);
-    const TonemapOptions options = {.op = "reinhard"};
+    const TonemapOptions options = {.op = resolve_picture_operator("reinhard")};
     expect_same(in, "half.exr", options, TypeDesc::HALF);
     expect_same(in, "a.png", options, TypeDesc::UINT8);  // no Z there; and color divided by alpha
 }
@@ -121,9 +121,9 @@ TEST_F(TonemapFile, TexturesBecomePictures) {
             kind[0] == 'P' ? OIIO::ImageBufAlgo::MakeTxTexture : OIIO::ImageBufAlgo::MakeTxEnvLatl,
             make_rgb(64, 32, TypeDesc::HALF, 4), in, config))
             << OIIO::geterror();
-        expect_same(in, "half.exr", {.op = "hable"}, TypeDesc::HALF);
+        expect_same(in, "half.exr", {.op = resolve_picture_operator("hable")}, TypeDesc::HALF);
         const std::string out = folder_.file("out.exr");
-        tonemap_file(Tonemapper({.op = "hable"}), in, out);
+        tonemap_file(Tonemapper({.op = resolve_picture_operator("hable")}), in, out);
         EXPECT_EQ(read_image(out).spec().width, 64) << "all of it is in the file";
     }
 }
@@ -141,14 +141,15 @@ TEST_F(TonemapFile, AnySubimage) {
     // Also of an operator that measures its picture.
     for (const char* op : {"hable", "drago"}) {
         for (int page = 0; page < 2; ++page) {
-            tonemap_file(Tonemapper({.op = op}), in, out, written_as(TypeDesc::FLOAT),
-                         {.subimage = std::to_string(page)}, 1);
-            EXPECT_TRUE(same_bits(read_image(out),
-                                  tonemap(pages.at(static_cast<std::size_t>(page)), {.op = op})))
+            tonemap_file(Tonemapper({.op = resolve_picture_operator(op)}), in, out,
+                         written_as(TypeDesc::FLOAT), {.subimage = std::to_string(page)}, 1);
+            EXPECT_TRUE(same_bits(read_image(out), tonemap(pages.at(static_cast<std::size_t>(page)),
+                                                           {.op = resolve_picture_operator(op)})))
                 << op << ", " << page;
         }
     }
-    EXPECT_THROW(tonemap_file(Tonemapper({.op = "hable"}), in, out, {}, {.subimage = "2"}, 1),
+    EXPECT_THROW(tonemap_file(Tonemapper({.op = resolve_picture_operator("hable")}), in, out, {},
+                              {.subimage = "2"}, 1),
                  FileError);
 }
 
@@ -157,8 +158,8 @@ TEST_F(TonemapFile, RowsInFilesThatBeginAtTheBottom) {
     spec.attribute("openexr:lineOrder", "decreasingY");
     const std::string in = folder_.file("a.exr");
     put(spec, in);
-    expect_same(in, "half.exr", {.op = "hable"}, TypeDesc::HALF);
-    expect_same(in, "a.png", {.op = "hable"}, TypeDesc::UINT8);
+    expect_same(in, "half.exr", {.op = resolve_picture_operator("hable")}, TypeDesc::HALF);
+    expect_same(in, "a.png", {.op = resolve_picture_operator("hable")}, TypeDesc::UINT8);
 }
 
 TEST_F(TonemapFile, DisplayWindowsBeyondAndInsideThePicture) {
@@ -170,8 +171,8 @@ TEST_F(TonemapFile, DisplayWindowsBeyondAndInsideThePicture) {
         spec.full_height = kHeight + 3 * offset;
         const std::string in = folder_.file("a.exr");
         put(spec, in);
-        expect_same(in, "half.exr", {.op = "hable"}, TypeDesc::HALF);
-        expect_same(in, "a.png", {.op = "hable"}, TypeDesc::UINT8);
+        expect_same(in, "half.exr", {.op = resolve_picture_operator("hable")}, TypeDesc::HALF);
+        expect_same(in, "a.png", {.op = resolve_picture_operator("hable")}, TypeDesc::UINT8);
     }
     // Nothing of the picture is in it.
     ImageSpec spec = spec_of({"R", "G", "B"});
@@ -179,18 +180,18 @@ TEST_F(TonemapFile, DisplayWindowsBeyondAndInsideThePicture) {
     spec.full_height = 100;
     const std::string in = folder_.file("b.exr");
     put(spec, in);
-    expect_same(in, "a.png", {.op = "hable"}, TypeDesc::UINT8);
+    expect_same(in, "a.png", {.op = resolve_picture_operator("hable")}, TypeDesc::UINT8);
 }
 
 TEST_F(TonemapFile, StatisticsAreOfTheWholePicture) {
     const std::string in = folder_.file("a.exr");
     put(spec_of({"R", "G", "B"}), in, 50);
-    expect_same(in, "out.exr", {.op = "drago"});
+    expect_same(in, "out.exr", {.op = resolve_picture_operator("drago")});
     // Alpha that was never written: pixels count without it.
     ImageBuf bare = make_picture(spec_of({"R", "G", "B", "A"}), 50);
     OIIO::ImageBufAlgo::fill(bare, {0.0F}, OIIO::ROI(0, kWidth, 0, kHeight, 0, 1, 3, 4));
     write_image_atomically(bare, in);
-    expect_same(in, "out.exr", {.op = "drago"});
+    expect_same(in, "out.exr", {.op = resolve_picture_operator("drago")});
 }
 
 TEST_F(TonemapFile, GrayStaysGrayOrBecomesColor) {
@@ -200,9 +201,10 @@ TEST_F(TonemapFile, GrayStaysGrayOrBecomesColor) {
     ASSERT_EQ(spec.nchannels, 1);
     for (const char* op : {"hable", "false_color"}) {
         const std::string out = folder_.file("out.exr"), whole = folder_.file("whole.exr");
-        tonemap_in_batches(Tonemapper({.op = op}), in, out, written_as(TypeDesc::HALF), {}, 2,
-                           kSmallBatch);
-        write_image_atomically(tonemap(read_image(in), {.op = op}), whole, TypeDesc::HALF);
+        tonemap_in_batches(Tonemapper({.op = resolve_picture_operator(op)}), in, out,
+                           written_as(TypeDesc::HALF), {}, 2, kSmallBatch);
+        write_image_atomically(tonemap(read_image(in), {.op = resolve_picture_operator(op)}), whole,
+                               TypeDesc::HALF);
         EXPECT_TRUE(bytes_of(out) == bytes_of(whole)) << op;
     }
 }
@@ -210,9 +212,9 @@ TEST_F(TonemapFile, GrayStaysGrayOrBecomesColor) {
 TEST_F(TonemapFile, OntoItself) {
     const std::string in = folder_.file("a.exr"), out = folder_.file("b.exr");
     put(spec_of({"R", "G", "B"}), in);
-    tonemap_file(Tonemapper({.op = "hable"}), in, out, TypeDesc::HALF);
-    tonemap_in_batches(Tonemapper({.op = "hable"}), in, in, written_as(TypeDesc::HALF), {}, 3,
-                       kSmallBatch);
+    tonemap_file(Tonemapper({.op = resolve_picture_operator("hable")}), in, out, TypeDesc::HALF);
+    tonemap_in_batches(Tonemapper({.op = resolve_picture_operator("hable")}), in, in,
+                       written_as(TypeDesc::HALF), {}, 3, kSmallBatch);
     EXPECT_TRUE(bytes_of(in) == bytes_of(out));
 }
 
@@ -234,8 +236,8 @@ TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
     std::ofstream(out) << "the old file";
     const auto run = [&](int threads) {
         return message_of([&] {
-            tonemap_in_batches(Tonemapper({.op = "hable"}), in, out, written_as(TypeDesc::HALF), {},
-                               threads, kSmallBatch);
+            tonemap_in_batches(Tonemapper({.op = resolve_picture_operator("hable")}), in, out,
+                               written_as(TypeDesc::HALF), {}, threads, kSmallBatch);
         });
     };
     const auto expect_old = [&] {
@@ -270,8 +272,10 @@ TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
 TEST_F(TonemapFile, PicturesThatCannotBeToneMappedAreNamed) {
     const std::string in = folder_.file("a.exr");
     put(spec_of({"X", "Y"}), in);
-    const std::string message =
-        message_of([&] { tonemap_file(Tonemapper({.op = "hable"}), in, folder_.file("out.exr")); });
+    const std::string message = message_of([&] {
+        tonemap_file(Tonemapper({.op = resolve_picture_operator("hable")}), in,
+                     folder_.file("out.exr"));
+    });
     EXPECT_TRUE(message.starts_with("file: " + in + ": ")) << message;
     EXPECT_NE(message.find("2 channels (X, Y)"), std::string::npos) << message;
 }

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How often commands open their files, by strace: the file of an operator, a LUT and a config once, a picture at most
+twice. And a shot whose operator's file disappears while its frames are tone mapped.
+
+    python3 tests/cli/test_opens.py build/release/bin/tonewright
+
+A picture is opened twice where its pixels decide how it is tone mapped: they are measured first, and read again, so that
+memory does not grow with the picture. With --lut, the file's first lines are read for the input that it states, and
+OpenColorIO opens the file for the table. Opening one picture makes several system calls in OpenImageIO, which
+`tonewright info` counts. The last line is `N passed, M failed`.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report, need_program, run, skip  # noqa: E402
+
+OPENED = re.compile(r'open(?:at)?\([^"]*"(?:[^"]*/)?([^"/]+)", [^)]*\) = \d+')
+
+
+class Opens:
+    def __init__(self, report, command, folder):
+        self.report, self.command, self.folder = report, command, folder
+
+    def count(self, arguments, stdin=b""):
+        """(file name -> successful opens, exit code)"""
+        log = self.folder / "strace.log"
+        done = subprocess.run(["strace", "-f", "-e", "trace=open,openat", "-o", log, self.command, *arguments],
+                              cwd=self.folder, input=stdin, capture_output=True, check=False)
+        counts = {}
+        for line in log.read_text(errors="replace").splitlines():
+            if match := OPENED.search(line):
+                counts[match[1]] = counts.get(match[1], 0) + ("O_DIRECTORY" not in line and "O_WRONLY" not in line)
+        return counts, done
+
+    def check(self, text, wanted, stdin=b""):
+        """wanted: file name -> most opens, at least one"""
+        counts, done = self.count(text.split(), stdin)
+        self.report.check(f"{text}: exit code", done.returncode in (0, 1), done.stderr.decode(errors="replace"))
+        for name, most in wanted.items():
+            found = counts.get(name, 0)
+            self.report.check(f"{text}: opens {name}", 1 <= found <= most, f"{found} times; expected 1 to {most}")
+
+
+def check_operators(c):
+    color = b"0.18 0.18 0.18\n"
+    for name in ("mine.tone", "film.cube"):
+        c.check(f"eval {name}", {name: 1}, color)
+        c.check(f"plot {name} -o out.svg", {name: 1})
+        c.check(f"config --operator {name} --name Mine --views none --profile 2.1 --displays srgb -o config", {name: 1})
+        c.check(f"apply scene.hdr out.png --operator {name}", {name: 1})
+        c.check(f"compare scene.hdr {name} hable -o out.png", {name: 1})
+    c.check("shader mine.tone --language glsl -o out.glsl", {"mine.tone": 1})
+    c.check("verify mine.tone --quick --no-gpu --shaders none", {"mine.tone": 1})
+    c.check("bake film.cube --for unity_urp -o out.png", {"film.cube": 1})
+    if os.environ.get("TONEWRIGHT_TEST_ALL"):  # seconds of fits and of measuring
+        c.check("bake mine.tone --for mpv --exact", {"mine.tone": 1})
+    c.check("check mine.tone", {"mine.tone": 1})
+    c.check("list mine.tone", {"mine.tone": 1})
+    c.check("apply frame.####.hdr out.####.png --frames 1-6 --operator mine.tone", {"mine.tone": 1})
+    c.check("apply frame.####.hdr out.####.png --frames 1-6 --operator mine.tone --auto-exposure mean", {"mine.tone": 1})
+    c.check("verify --lut film.cube", {"film.cube": 1})
+    c.check("eval --lut film.cube", {"film.cube": 2}, color)
+    c.check("apply scene.hdr out.png --lut film.cube", {"film.cube": 2})
+
+
+def check_configs(c):
+    run(c.command, "config", "-o", c.folder / "own", "--views", "hable", "--profile", "2.1", "-q")
+    c.check("verify --config own/config.ocio hable --no-gpu --quick --shaders none", {"config.ocio": 1})
+
+
+def check_pictures(c):
+    once = c.count(["info", "scene.hdr"])[0].get("scene.hdr", 0)
+    c.report.check("info opens the picture", once > 0, f"{once} times")
+    for text in ("apply scene.hdr out.png", "apply scene.hdr out.png --verbose", "apply scene.hdr out.exr --operator local_laplacian",
+                 "compare scene.hdr hable -o out.png"):
+        c.check(text, {"scene.hdr": once})
+    for text in ("apply scene.hdr out.png --operator drago", "apply scene.hdr out.png --auto-exposure mean --verbose",
+                 "meter scene.hdr"):
+        c.check(text, {"scene.hdr": 2 * once})
+
+
+def check_shots(c):
+    """Every frame is that of the file at the start, also after it was replaced, half saved or deleted."""
+    count = 30
+    for number in range(1, count + 1):
+        link = c.folder / f"shot.{number:04d}.hdr"
+        if not link.exists():
+            link.hardlink_to(c.folder / "scene.hdr")
+    wanted = c.folder / "wanted.png"
+    run(c.command, "apply", c.folder / "scene.hdr", wanted, "--operator", c.folder / "mine.tone", "-q", "--no-metadata")
+    text = (c.folder / "mine.tone").read_text()
+    changes = {"deleted": lambda path: path.unlink(), "half saved": lambda path: path.write_text(text[:100]),
+               "replaced": lambda path: path.write_text(run(c.command, "list", "reinhard", "--definition"))}
+    for how, change in changes.items():
+        path = c.folder / "shot.tone"
+        path.write_text(text)
+        for old in c.folder.glob("graded.*.png"):
+            old.unlink()
+        job = subprocess.Popen([c.command, "apply", "shot.####.hdr", "graded.####.png", "--frames", f"1-{count}", "--operator",
+                                "shot.tone", "--jobs", "1", "--no-metadata"], cwd=c.folder, stderr=subprocess.PIPE)
+        while not (c.folder / "graded.0001.png").exists() and job.poll() is None:
+            time.sleep(0.001)
+        change(path)
+        in_time = not (c.folder / f"graded.{count:04d}.png").exists()
+        said = job.communicate()[1].decode(errors="replace")
+        frames = [c.folder / f"graded.{number:04d}.png" for number in range(1, count + 1)]
+        c.report.check(f"operator's file {how} in a shot: before the last frame", in_time)
+        c.report.check(f"operator's file {how} in a shot: exit code", job.returncode == 0, said)
+        pictures = {frame.read_bytes() if frame.exists() else b"" for frame in frames}
+        c.report.check(f"operator's file {how} in a shot: all frames are the same picture", len(pictures) == 1 and b"" not in pictures)
+        c.report.check(f"operator's file {how} in a shot: the picture of the file at the start",
+                       wanted.read_bytes() in pictures)
+
+
+def main():
+    need_program("strace", "strace")
+    command = os.path.abspath(sys.argv[1])
+    report = Report()
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        if subprocess.run(["strace", "-o", os.devnull, "true"], capture_output=True, check=False).returncode:
+            skip("this machine does not allow strace to trace processes")
+        run(command, "chart", "-o", folder / "scene.hdr", "--width", "640", "--height", "360", "-q")
+        (folder / "mine.tone").write_text(run(command, "list", "hable", "--definition").replace('id = "hable"', 'id = "mine"')
+                                          .replace('view = "Hable"', 'view = "Mine"').replace("Hable (Uncharted 2)", "Mine"))
+        run(command, "bake", "hable", "--format", "cube", "--size", "17", "-o", folder / "film.cube", "-q")
+        for number in range(1, 7):
+            (folder / f"frame.{number:04d}.hdr").hardlink_to(folder / "scene.hdr")
+        c = Opens(report, command, folder)
+        for check in (check_operators, check_configs, check_pictures, check_shots):
+            check(c)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -27,7 +27,8 @@ for folder, direct in {
     "image": ["lut"],
     "verify": ["ocio", "shader"],
     "report": ["verify"],
-    "cli": ["report"],
+    "plot": ["engine"],
+    "cli": ["report", "plot"],
     "cli/pictures": ["cli", "image"],  # the module that the program loads
     "plugin": ["image"],
     "python": ["verify", "image"],
@@ -49,12 +50,13 @@ THIRD_PARTY = {
     "yaml-cpp": ["ocio"],
     "lcms2.h": ["lut"],
     "GL": ["ocio"],
+    "cairo-pdf.h": ["plot/cairo_surface.cpp"],
     "xbyak": ["engine"],
     "CLI": ["cli/options.cpp"],  # one file each: they take seconds to compile
     "nlohmann": ["cli/json.cpp"],
     "toml++": ["definition/toml_text.cpp"],
     "pybind11": ["python"],
-    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "cli", "cli/pictures", "plugin", "python"],
+    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "plot", "cli", "cli/pictures", "plugin", "python"],
 }
 # They have names of their own for the parameters of a request.
 FRONT_ENDS = {"cli", "cli/pictures", "python", "plugin", "definition"}

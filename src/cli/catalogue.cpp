@@ -13,10 +13,10 @@
 
 #include "base/atomic_file.h"
 #include "base/format_number.h"
-#include "cli/curve_plot.h"
-#include "cli/gray_curve.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
+#include "plot/curve_plot.h"
+#include "plot/gray_curve.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/registry.h"
@@ -68,7 +68,7 @@ constexpr std::array kChannelNames = {"red", "green", "blue"};
 PlotLine reference_line(const std::vector<double>& scene) {
     return {"clamp",   "no tone mapping: clamp",
             "#a8b0b9", 1.2,
-            "5 3",     gray_codes(srgb_view("clamp"), scene)};
+            {5, 3},    gray_codes(srgb_view("clamp"), scene)};
 }
 
 /// "0.18 -> 0.435" where the curve is at that scene value.
@@ -112,7 +112,10 @@ CurvePlot plot_of(const Operator& op) {
         for (std::size_t c = 0; c < 3; ++c) {
             plot.lines.push_back({fmt::format("gray-{}", kChannelNames[c]),
                                   fmt::format("{} of the shown gray", kChannelNames[c]),
-                                  kChannelColors[c], 1, "", gray[c]});
+                                  kChannelColors[c],
+                                  1,
+                                  {},
+                                  gray[c]});
         }
     }
     PlotLine clamp = reference_line(scene);
@@ -126,7 +129,7 @@ CurvePlot plot_of(const Operator& op) {
         const Planes orange = codes_of(view, kOrange.rgb, scene);
         for (std::size_t c = 0; c < 3; ++c)
             plot.lower_lines.push_back(
-                {kChannelNames[c], "", kChannelColors[c], 1.6, "", orange[c]});
+                {kChannelNames[c], "", kChannelColors[c], 1.6, {}, orange[c]});
     }
     std::vector<double> whole_stops(21);
     std::iota(whole_stops.begin(), whole_stops.end(), -10.0);

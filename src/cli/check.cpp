@@ -4,15 +4,15 @@
 #include <cstdio>
 #include <memory>
 
-#include "cli/gray_curve.h"
 #include "cli/json.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/plot.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
-#include "cli/terminal_plot.h"
 #include "measure/laws.h"
+#include "plot/gray_curve.h"
+#include "plot/terminal_plot.h"
 #include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/curve_plot.h"
 #include "cli/messages.h"
 #include "cli/picture_options.h"
+#include "plot/curve_plot.h"
 #include "tonewright/lut.h"
 #include "tonewright/version.h"
 
@@ -62,6 +62,6 @@ extern "C" const PictureCommands* tonewright_picture_commands(const char* build)
 inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
 /// The release, and the number of this interface: increase it with every change of the interface
 /// or of the options.
-inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 8";
+inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 9";
 
 TONEWRIGHT_NAMESPACE_END

@@ -8,12 +8,12 @@
 #include "base/atomic_file.h"
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "cli/curve_plot.h"
-#include "cli/gray_curve.h"
 #include "cli/picture_commands.h"
 #include "cli/plot.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
+#include "plot/curve_plot.h"
+#include "plot/gray_curve.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
@@ -205,7 +205,7 @@ CurvePlot plot_of(const PlotOptions& options) {
     if (!display.is_hdr) {
         const View clamp =
             make_view(resolve_operator("clamp"), options.input, options.exposure, options.display);
-        PlotLine line = {"no_tone_mapping",       "no tone mapping: clamp", "#a8b0b9", 1.2, "5 3",
+        PlotLine line = {"no_tone_mapping",       "no tone mapping: clamp", "#a8b0b9", 1.2, {5, 3},
                          gray_codes(clamp, scene)};
         if (options.is_dark) line.color = "#767d85";
         const bool is_there =
@@ -245,13 +245,12 @@ CurvePlot plot_of(const PlotOptions& options) {
 std::string write_plot(const PlotOptions& options) {
     const CurvePlot plot = plot_of(options);
     const std::string extension = extension_of(options.file);
-    const int vector_width = options.width > 0 ? options.width : 640;
-    if (extension == ".pdf") {
-        write_text_atomically(options.file, to_pdf(plot, vector_width));
-    } else if (extension == ".svg") {
-        write_text_atomically(options.file, to_svg(plot, vector_width));
+    const bool is_vector = extension == ".svg" || extension == ".pdf";
+    const int width = options.width > 0 ? options.width : is_vector ? 640 : 1280;
+    if (extension == ".svg") {
+        write_text_atomically(options.file, to_svg(plot, width));
     } else {
-        picture_commands().write_plot(plot, options.file, options.width > 0 ? options.width : 1280);
+        picture_commands().write_plot(plot, options.file, width);
     }
     return plot.title;
 }

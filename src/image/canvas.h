@@ -5,12 +5,9 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "base/stroke_font.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -52,12 +49,9 @@ class TONEWRIGHT_API Canvas {
     enum class Align : unsigned char { left, center, right };
     /// Draws one line of text (printable ASCII; `?` for each other character), antialiased. `align`
     /// gives the meaning of `x`, `baseline` is the line below the letters, `cap_height` the height
-    /// of capitals. `extra_width` makes the strokes wider, in pixels.
+    /// of capitals.
     void text(std::string_view text, double x, double baseline, double cap_height, const Rgb& color,
-              Align align = Align::left, double extra_width = 0);
-    /// Draws lines as one shape with round ends, antialiased: where they meet or cross nothing is
-    /// drawn twice.
-    void strokes(std::span<const Stroke> lines, double width, const Rgb& color);
+              Align align = Align::left);
 
     /// The picture in the given pixel type, R, G, B.
     [[nodiscard]] OIIO::ImageBuf to_image(const OIIO::TypeDesc& type) const;

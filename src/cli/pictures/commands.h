@@ -16,7 +16,7 @@ void run_chart(const ChartOptions& options);
 void run_sheet(const SheetOptions& options);
 void run_info(const InfoOptions& options);
 [[nodiscard]] std::vector<float> read_picture_pixels(const std::string& path);
-void write_plot_picture(const CurvePlot& plot, const std::string& path, int width);
+void write_plot_file(const CurvePlot& plot, const std::string& path, int width);
 [[nodiscard]] Lut load_lut_picture(const std::string& path);
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits);
 [[nodiscard]] ReportPicture read_report_picture(const ReportPictureOptions& options);

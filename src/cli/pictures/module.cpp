@@ -26,7 +26,7 @@ class Commands : public PictureCommands {
         return read_picture_pixels(path);
     }
     void write_plot(const CurvePlot& plot, const std::string& path, int width) const override {
-        write_plot_picture(plot, path, width);
+        write_plot_file(plot, path, width);
     }
     [[nodiscard]] Lut read_lut(const std::string& path) const override {
         return load_lut_picture(path);

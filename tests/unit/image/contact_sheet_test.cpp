@@ -302,26 +302,6 @@ TEST(Canvas, LettersAreSymmetricWhereTheirShapesAre) {
         EXPECT_FALSE(looks_like(c, c, false)) << c;
 }
 
-TEST(Canvas, StrokesAreOneShape) {
-    Canvas canvas(40, 20, gray_of(0));
-    // Twice the same line, and one that crosses it: half covered pixels stay half covered.
-    const std::vector<Stroke> cross = {{5, 10, 35, 10}, {35, 10, 5, 10}, {20, 2, 20, 18}};
-    canvas.strokes(cross, 3, {1, 0.5F, 0});
-    EXPECT_EQ(canvas.at(10, 9)[0], 1);
-    EXPECT_EQ(canvas.at(10, 9)[1], 0.5F);
-    EXPECT_EQ(canvas.at(10, 8)[0], 0.5F);  // the line ends in the middle of this row
-    EXPECT_EQ(canvas.at(10, 11)[0], 0.5F);
-    EXPECT_EQ(canvas.at(10, 7)[0], 0);
-    EXPECT_EQ(canvas.at(20, 4)[0], 1);
-    EXPECT_EQ(canvas.at(2, 10)[0], 0);
-    // Nothing beyond the edges.
-    const std::vector<Stroke> outside = {{-50, -50, 100, -40}, {-9, 5, 60, 5}};
-    canvas.strokes(outside, 2, gray_of(1));
-    EXPECT_EQ(canvas.at(0, 4)[0], 1);
-    EXPECT_EQ(canvas.at(39, 5)[0], 1);
-    EXPECT_EQ(canvas.at(0, 0)[0], 0);
-}
-
 TEST(Canvas, NothingIsDrawnOutside) {
     Canvas canvas(10, 10, gray_of(0));
     canvas.text("Tonewright", -50, 5, 12, gray_of(1));

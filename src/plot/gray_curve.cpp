@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/gray_curve.h"
+#include "plot/gray_curve.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,8 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "cli/curve_plot.h"
+#include "plot/curve_plot.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -14,8 +13,10 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// picture this wide.
 inline constexpr double kPlotWidth = 640;
 inline constexpr double kDotRadius = 3.5;
+/// Width of the page's color around words on lines, both sides together.
+inline constexpr double kHaloWidth = 3;
 
-/// sRGB colors of what is not data, `#rrggbb`.
+/// sRGB colors of what is not data, `#rgb` or `#rrggbb`.
 struct PlotColors {
     std::string_view page;
     std::string_view text;
@@ -73,21 +74,32 @@ class PlotSurface {
     virtual void end_group() = 0;
 };
 
-/// The words of a plot in the stroke font, which SVG files and pictures have in common.
+inline constexpr PlotSurface::TextStyle kPlain = {};
+inline constexpr PlotSurface::TextStyle kHeading = {PlotSurface::Anchor::start, false, true};
+
+/// The words of a plot in the stroke font.
 struct Lettering {
     std::string ascii;
     /// The font has all characters: none became `?`.
     bool is_complete = true;
-    double cap_height = 0;
-    /// Beyond the stroke width of the font.
-    double extra_width = 0;
+    double unit = 0;  // of the font's glyphs
+    double stroke_width = 0;
+    double width = 0;
 };
 [[nodiscard]] Lettering lettering_of(const PlotSurface::TextStyle& style, std::string_view words);
-/// Width of the page's color around words on lines, both sides together.
-inline constexpr double kHaloWidth = 3;
+/// From the start of words to their anchor.
+[[nodiscard]] double anchor_offset(const PlotSurface::TextStyle& style, const Lettering& letters);
 
-/// Draws the whole plot. The surface has its own background.
+/// Draws everything in front of the page's color.
 void draw(const CurvePlot& plot, PlotSurface& surface);
+void draw(const PatchChart& chart, PlotSurface& surface);
 [[nodiscard]] double height_of(const CurvePlot& plot);
+[[nodiscard]] double height_of(const PatchChart& chart);
+
+/// Formulas for positions, for readers of a file: `x = 50 + 27 (stops from 0.18 + 10), y = ...`.
+[[nodiscard]] std::string axes_of(const CurvePlot& plot);
+
+/// At most two decimals, without trailing zeros.
+[[nodiscard]] std::string two_decimals(double value);
 
 TONEWRIGHT_NAMESPACE_END

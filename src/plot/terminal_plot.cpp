@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/terminal_plot.h"
+#include "plot/terminal_plot.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "cli/gray_curve.h"
+#include "plot/gray_curve.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/curve_plot.h"
+#include "plot/curve_plot.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,7 @@
 #include <span>
 
 #include "base/format_number.h"
-#include "base/stroke_font.h"
-#include "cli/plot_surface.h"
+#include "plot/surface.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -23,11 +22,9 @@ using Point = PlotSurface::Point;
 using Rule = PlotSurface::Rule;
 using Segment = PlotSurface::Segment;
 
-constexpr PlotSurface::TextStyle kPlain = {};
 constexpr PlotSurface::TextStyle kCentered = {Anchor::middle};
 constexpr PlotSurface::TextStyle kAtEnd = {Anchor::end};
 constexpr PlotSurface::TextStyle kOnLines = {Anchor::start, true};
-constexpr PlotSurface::TextStyle kHeading = {Anchor::start, false, true};
 
 constexpr double kLeft = 50;
 constexpr double kStop = 27;  // width of one stop
@@ -36,8 +33,6 @@ constexpr int kHighestStop = 10;
 constexpr double kRight = kLeft + kStop * (kHighestStop - kLowestStop);
 constexpr double kMargin = 6;  // between a graph's frame and code values 0 and 1
 constexpr double kLegendRow = 15;
-
-constexpr std::string_view kBlack = "#000";  // SVG's own
 
 double x_of(double stops) { return kLeft + kStop * (stops - kLowestStop); }
 
@@ -59,15 +54,6 @@ struct Graph {
     [[nodiscard]] double y_of(double value) const { return top + unit() * (scale.high - value); }
     [[nodiscard]] double bottom() const { return top + height; }
 };
-
-/// At most two decimals, without trailing zeros.
-std::string px(double value) {
-    std::string text = fmt::format("{:.2f}", value);
-    while (text.back() == '0')
-        text.pop_back();
-    if (text.back() == '.') text.pop_back();
-    return text == "-0" ? "0" : text;
-}
 
 /// Douglas and Peucker 1973, with the distance along y: selects the points that a line needs.
 void mark_needed(const std::vector<double>& x, const std::vector<double>& y, std::size_t first,
@@ -107,91 +93,6 @@ std::vector<Point> points_of(const PlotLine& line, const Graph& graph) {
     return points;
 }
 
-/// An SVG file being written.
-class Svg : public PlotSurface {
-  public:
-    template <typename... Args>
-    void add(fmt::format_string<Args...> format, Args&&... args) {
-        fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-    }
-    /// The strokes draw the visible text. The words are there as well, invisible, for search,
-    /// selection and screen readers; they are visible where the font lacks a character.
-    void text(Point at, const TextStyle& style, std::string_view words) override {
-        const Lettering letters = lettering_of(style, words);
-        if (letters.is_complete) {
-            const double unit = letters.cap_height / kCapHeight;
-            const double width = unit * stroke_text_width(letters.ascii);
-            const double share = style.anchor == Anchor::start    ? 0
-                                 : style.anchor == Anchor::middle ? 0.5
-                                                                  : 1;
-            const std::string path = fmt::format(
-                " transform=\"matrix({0:.4g} 0 0 -{0:.4g} {1} {2})\" d=\"{3}\"/>\n", unit / 100,
-                px(at.x - share * width), px(at.y), stroke_text_path(letters.ascii));
-            if (style.has_halo) add("<path class=\"s o\"{}", path);
-            add("<path class=\"s{}\"{}", style.is_heading ? " w" : "", path);
-        }
-        add("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(at.x), px(at.y),
-            class_of(style, !letters.is_complete), xml_escaped(words));
-    }
-    void rules(Rule kind, std::span<const Segment> segments) override {
-        constexpr std::array kClasses = {"g", "m", "t"};
-        std::string path;
-        for (const auto& [from, to] : segments) {
-            path += fmt::format("M{} {}{}{}", px(from.x), px(from.y), from.x == to.x ? 'V' : 'H',
-                                px(from.x == to.x ? to.y : to.x));
-        }
-        add("<path class=\"{}\" d=\"{}\"/>\n", kClasses[static_cast<std::size_t>(kind)], path);
-    }
-    void frame(Frame kind, Point top_left, double width, double height) override {
-        add("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-            kind == Frame::graph ? "f" : "p", px(top_left.x), px(top_left.y), px(width),
-            px(height));
-    }
-    void dot(Point center) override {
-        add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", px(center.x), px(center.y), px(kDotRadius));
-    }
-    void sample(const PlotLine& line, Point from, double length) override {
-        add("<path{} d=\"M{} {}h{}\"/>\n", stroke(line), px(from.x), px(from.y), px(length));
-    }
-    void begin_lines() override { add("<g fill=\"none\" stroke-linejoin=\"round\">\n"); }
-    void line(const PlotLine& line, std::span<const Point> points) override {
-        std::string list;
-        for (const Point& p : points)
-            list += (list.empty() ? "" : " ") + px(p.x) + "," + px(p.y);
-        add("<polyline id=\"{}\"{} points=\"{}\"/>\n", xml_escaped(line.id), stroke(line), list);
-    }
-    void begin_patches(double height) override {
-        add("<g stroke-width=\"{}\" shape-rendering=\"crispEdges\">\n", px(height));
-    }
-    void patches(Point left, double width, std::span<const Patch> row) override {
-        add("<g transform=\"matrix({} 0 0 1 {} {})\">\n", px(width), px(left.x), px(left.y));
-        for (const Patch& patch : row) {
-            add("<path stroke=\"{}\" d=\"M{} 0h{}\"/>\n", patch.color, px(patch.left),
-                px(patch.right - patch.left));
-        }
-        end_group();
-    }
-    void end_group() override { add("</g>\n"); }
-    [[nodiscard]] std::string take() { return std::move(text_); }
-
-  private:
-    [[nodiscard]] static std::string stroke(const PlotLine& line) {
-        return fmt::format(
-            " stroke=\"{}\" stroke-width=\"{}\"{}", line.color, px(line.width),
-            line.dashes.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", line.dashes));
-    }
-    [[nodiscard]] static std::string class_of(const TextStyle& style, bool is_seen) {
-        constexpr std::array kAnchors = {"", "c", "e"};
-        std::string name = style.is_heading ? "b" : style.has_halo && is_seen ? "h" : "";
-        if (is_seen) name += name.empty() ? "v" : " v";
-        const std::string anchor = kAnchors[static_cast<std::size_t>(style.anchor)];
-        if (!name.empty() && !anchor.empty()) name += " ";
-        name += anchor;
-        return name.empty() ? "" : fmt::format(" class=\"{}\"", name);
-    }
-    std::string text_;
-};
-
 /// With a minus sign instead of a hyphen.
 std::string tick_label(std::string text) {
     if (text.starts_with('-')) text.replace(0, 1, "\u2212");
@@ -219,7 +120,7 @@ std::vector<PlotTick> even_ticks(const PlotScale& scale) {
     const auto steps = static_cast<int>(std::lround((scale.high - scale.low) / scale.step));
     for (int i = 0; i <= steps; ++i) {
         const double value = scale.low + i * scale.step;
-        ticks.push_back({value, tick_label(px(value)), ""});
+        ticks.push_back({value, tick_label(two_decimals(value)), ""});
     }
     return ticks;
 }
@@ -323,6 +224,10 @@ void draw_patches(PlotSurface& surface, std::span<const Vector3> codes, Point le
 }
 
 constexpr double kPatchRow = 13;
+
+// Of a chart of patches.
+constexpr double kFirstRow = 66;
+constexpr double kRowHeight = kPatchRow + 4;
 
 /// Around patches, which may be as white as the page.
 void draw_patch_frame(PlotSurface& surface, double x, double y, double width, double height) {
@@ -473,40 +378,6 @@ struct Layout {
     Layout& operator=(const Layout&) = delete;
 };
 
-/// The file around a body.
-std::string file_of(const std::string& title, const std::string& description, double height,
-                    const std::string& body, double width = kPlotWidth,
-                    const PlotColors& colors = colors_of(PlotTheme::light)) {
-    Svg svg;
-    svg.add(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" width=\"{}\" "
-        "height=\"{}\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"11\">\n"
-        "<title>{}</title>\n<desc>{}</desc>\n",
-        px(kPlotWidth), px(height), px(width), px(height * width / kPlotWidth), xml_escaped(title),
-        xml_escaped(description));
-    // Widths in the unit of the paths of words.
-    const auto stroke_width = [](const PlotSurface::TextStyle& style, double extra) {
-        const Lettering letters = lettering_of(style, {});
-        const double unit = letters.cap_height / kCapHeight;
-        return px((std::max(kStrokeWidth * unit, 1.0) + letters.extra_width + extra) / unit * 100);
-    };
-    svg.add(
-        "<style>text{{fill:{0};fill-opacity:0}}.v{{fill-opacity:1}}"
-        ".b{{font-size:14px;font-weight:bold}}.c{{text-anchor:middle}}.e{{text-anchor:end}}"
-        ".h{{paint-order:stroke;stroke:{1};stroke-width:{2}px;stroke-linejoin:round}}"
-        ".s{{fill:none;stroke:{0};stroke-width:{3};stroke-linecap:round;stroke-linejoin:round}}"
-        ".w{{stroke-width:{4}}}.o{{stroke:{1};stroke-width:{5}}}",
-        colors.text, colors.page, kHaloWidth, stroke_width(kPlain, 0), stroke_width(kHeading, 0),
-        stroke_width(kPlain, kHaloWidth));
-    svg.add(
-        ".g{{stroke:{}}}.m{{stroke:{};stroke-dasharray:2 3}}.t{{stroke:{}}}"
-        ".f{{fill:none;stroke:{}}}.p{{fill:none;stroke:{}}}</style>\n"
-        "<rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
-        colors.grid, colors.frame, colors.frame, colors.frame, colors.patch_frame, colors.page);
-    if (colors.dot != kBlack) svg.add("<style>circle{{fill:{}}}</style>\n", colors.dot);
-    return svg.take() + body + "</svg>\n";
-}
-
 }  // namespace
 
 const std::vector<double>& plot_stops() {
@@ -521,14 +392,6 @@ const std::vector<double>& plot_stops() {
     return stops;
 }
 
-const PlotColors& colors_of(PlotTheme theme) {
-    static constexpr PlotColors kLight = {"#fff",    "#24292f", "#8c959f",
-                                          "#e4e8ec", "#d0d7de", kBlack};
-    static constexpr PlotColors kDark = {"#1b1d20", "#d8dce1", "#7d858e",
-                                         "#33373c", "#444a50", "#f2f4f6"};
-    return theme == PlotTheme::light ? kLight : kDark;
-}
-
 std::string line_color(std::size_t index, PlotTheme theme) {
     // Okabe and Ito 2008; on white their yellow is darker, on black their black and blue lighter.
     constexpr std::array kLight = {"#24292f", "#0072b2", "#d55e00", "#009e73",
@@ -538,52 +401,9 @@ std::string line_color(std::size_t index, PlotTheme theme) {
     return (theme == PlotTheme::light ? kLight : kDark)[index % kLight.size()];
 }
 
-std::string line_dashes(std::size_t index) {
-    constexpr std::array kDashes = {"", "6 3", "2 2"};
+std::vector<double> line_dashes(std::size_t index) {
+    static const std::array<std::vector<double>, 3> kDashes = {{{}, {6, 3}, {2, 2}}};
     return kDashes[index / 8 % kDashes.size()];
-}
-
-std::string xml_escaped(std::string_view text) {
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
-
-Lettering lettering_of(const PlotSurface::TextStyle& style, std::string_view words) {
-    struct Replacement {
-        std::string_view character, ascii;
-    };
-    constexpr std::array<Replacement, 3> kReplacements = {
-        {{"\u2212", "-"}, {"\u2192", "->"}, {"\u00d7", "x"}}};
-    Lettering letters;
-    letters.ascii = words;
-    for (const auto& [character, ascii] : kReplacements) {
-        for (std::size_t at = 0; (at = letters.ascii.find(character, at)) != std::string::npos;)
-            letters.ascii.replace(at, character.size(), ascii);
-    }
-    letters.is_complete = std::all_of(letters.ascii.begin(), letters.ascii.end(),
-                                      [](char c) { return c >= ' ' && c <= '~'; });
-    // Helvetica's capitals are 0.72 of its size.
-    letters.cap_height = 0.72 * (style.is_heading ? 13 : 11);
-    letters.extra_width = style.is_heading ? 0.6 : 0;
-    return letters;
 }
 
 double height_of(const CurvePlot& plot) { return Layout(plot).height; }
@@ -623,22 +443,25 @@ void draw(const CurvePlot& plot, PlotSurface& surface) {
     layout.small.draw(surface, layout.small_top);
 }
 
-std::string to_svg(const CurvePlot& plot, double width) {
+std::string axes_of(const CurvePlot& plot) {
     const Layout layout(plot);
-    Svg svg;
-    draw(plot, svg);
-    std::string description = fmt::format(
-        "x = {} + {} (stops from 0.18 + {}), y = {} - {} {}", px(kLeft), px(kStop), -kLowestStop,
-        shortest(layout.upper.y_of(0)), shortest(layout.upper.unit()), layout.upper.scale.quantity);
+    std::string description =
+        fmt::format("x = {} + {} (stops from 0.18 + {}), y = {} - {} {}", two_decimals(kLeft),
+                    two_decimals(kStop), -kLowestStop, shortest(layout.upper.y_of(0)),
+                    shortest(layout.upper.unit()), layout.upper.scale.quantity);
     if (!plot.lower_lines.empty()) {
-        description += fmt::format("; lower graph y = {} - {} value", px(layout.lower.y_of(0)),
-                                   shortest(layout.lower.unit()));
+        description +=
+            fmt::format("; lower graph y = {} - {} value", two_decimals(layout.lower.y_of(0)),
+                        shortest(layout.lower.unit()));
     }
-    return file_of(plot.title, description, layout.height, svg.take(), width,
-                   colors_of(plot.theme));
+    return description;
 }
 
-std::string to_svg(const PatchChart& chart) {
+double height_of(const PatchChart& chart) {
+    return kFirstRow + kRowHeight * static_cast<double>(chart.rows.size()) + 12;
+}
+
+void draw(const PatchChart& chart, PlotSurface& surface) {
     std::size_t columns = 0;
     for (const PatchBlock& block : chart.blocks)
         columns += block.columns.size();
@@ -648,36 +471,33 @@ std::string to_svg(const PatchChart& chart) {
     const double width =
         std::floor((kEnd - kLabels - kGap * static_cast<double>(chart.blocks.size() - 1)) /
                    static_cast<double>(columns));
-    constexpr double kFirstRow = 66;
-    constexpr double kRowHeight = kPatchRow + 4;
     const double height = kRowHeight * static_cast<double>(chart.rows.size());
 
-    Svg svg;
-    svg.text({14, 20}, kHeading, chart.title);
-    svg.text({kEnd, 20}, kAtEnd, chart.subtitle);
+    surface.text({14, 20}, kHeading, chart.title);
+    surface.text({kEnd, 20}, kAtEnd, chart.subtitle);
     double x = kLabels;
     std::size_t column = 0;
     for (const PatchBlock& block : chart.blocks) {
         const std::size_t count = block.columns.size();
-        svg.text({x, 44}, kPlain, block.heading);
+        surface.text({x, 44}, kPlain, block.heading);
         for (std::size_t i = 0; i < count; ++i)
-            svg.text({x + width * (static_cast<double>(i) + 0.5), 60}, kCentered, block.columns[i]);
-        svg.begin_patches(kRowHeight);
+            surface.text({x + width * (static_cast<double>(i) + 0.5), 60}, kCentered,
+                         block.columns[i]);
+        surface.begin_patches(kRowHeight);
         for (std::size_t i = 0; i < chart.rows.size(); ++i) {
-            draw_patches(svg, std::span(chart.rows[i].codes).subspan(column, count),
+            draw_patches(surface, std::span(chart.rows[i].codes).subspan(column, count),
                          {x, kFirstRow + kRowHeight * (static_cast<double>(i) + 0.5)}, width,
                          false);
         }
-        svg.end_group();
-        draw_patch_frame(svg, x, kFirstRow, width * static_cast<double>(count), height);
+        surface.end_group();
+        draw_patch_frame(surface, x, kFirstRow, width * static_cast<double>(count), height);
         column += count;
         x += width * static_cast<double>(count) + kGap;
     }
     for (std::size_t i = 0; i < chart.rows.size(); ++i) {
-        svg.text({14, kFirstRow + kRowHeight * (static_cast<double>(i) + 0.5) + 4}, kPlain,
-                 chart.rows[i].label);
+        surface.text({14, kFirstRow + kRowHeight * (static_cast<double>(i) + 0.5) + 4}, kPlain,
+                     chart.rows[i].label);
     }
-    return file_of(chart.title, chart.subtitle, kFirstRow + height + 12, svg.take());
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/curve_plot.h"
+#include "plot/curve_plot.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

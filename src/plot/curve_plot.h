@@ -17,7 +17,7 @@ struct PlotLine {
     std::string label;  // in the legend; empty: left out
     std::string color;
     double width = 1.5;
-    std::string dashes;          // of SVG's stroke-dasharray; empty: a solid line
+    std::vector<double> dashes;  // and gaps in turn; empty: a solid line
     std::vector<double> values;  // display code values as a rule, one for each of plot_stops()
 };
 
@@ -95,16 +95,9 @@ struct PatchChart {
 /// @param width  default width on a page
 [[nodiscard]] std::string to_svg(const CurvePlot& plot, double width = 640);
 [[nodiscard]] std::string to_svg(const PatchChart& chart);
-/// The plot as a PDF file of one page, in vectors.
-/// @param width  of the page, in pixels of 1/96 inch
-[[nodiscard]] std::string to_pdf(const CurvePlot& plot, double width = 640);
-
 /// Color `index` of a set that color-blind readers can tell apart (Okabe and Ito 2008), and the
 /// dashes of its line: from the ninth on, the colors repeat, dashed.
 [[nodiscard]] std::string line_color(std::size_t index, PlotTheme theme = PlotTheme::light);
-[[nodiscard]] std::string line_dashes(std::size_t index);
-
-/// `&`, `<`, `>` and quotes as entities: for SVG.
-[[nodiscard]] std::string xml_escaped(std::string_view text);
+[[nodiscard]] std::vector<double> line_dashes(std::size_t index);
 
 TONEWRIGHT_NAMESPACE_END

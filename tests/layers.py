@@ -30,6 +30,7 @@ for folder, direct in {
     "plot": ["engine"],
     "cli": ["report", "plot"],
     "cli/pictures": ["cli", "image"],  # the module that the program loads
+    "tools": ["cli"],
     "plugin": ["image"],
     "python": ["verify", "image"],
 }.items():
@@ -56,10 +57,10 @@ THIRD_PARTY = {
     "nlohmann": ["cli/json.cpp"],
     "toml++": ["definition/toml_text.cpp"],
     "pybind11": ["python"],
-    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "plot", "cli", "cli/pictures", "plugin", "python"],
+    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "plot", "cli", "cli/pictures", "tools", "plugin", "python"],
 }
 # They have names of their own for the parameters of a request.
-FRONT_ENDS = {"cli", "cli/pictures", "python", "plugin", "definition"}
+FRONT_ENDS = {"cli", "cli/pictures", "tools", "python", "plugin", "definition"}
 # Their options may have the same names as ours.
 OTHER_PROGRAMS = re.compile(r"oiiotool|mpv|glslangValidator|iscolorspace")
 # Text of the files that the command writes, for its users.

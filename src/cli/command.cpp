@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
 #include "cli/messages.h"
+#include "cli/options.h"
 #include "cli/picture_commands.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_file.h"
@@ -9,11 +10,43 @@
 #include <utility>
 
 TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+std::string exit_codes() {
+    std::string codes;
+    for (const ExitMeaning& exit : kExitMeanings) {
+        if (!codes.empty()) codes += ", ";
+        codes += std::to_string(exit.code) + " " + exit.text;
+    }
+    return codes;
+}
+
+}  // namespace
 
 void warn_of(const ResolvedOperator& op) {
     static std::set<std::string> said;
     const std::string text = op.caution();
     if (!text.empty() && said.insert(text).second) warn(text);
+}
+
+std::unique_ptr<CommandLine> make_command_line() {
+    auto program = std::make_unique<CommandLine>(
+        "tonewright",
+        "Tone map pictures, and write operators as LUTs, shaders and OpenColorIO configs.",
+        TONEWRIGHT_VERSION);
+    program->footer(
+        "Examples:\n"
+        "  tonewright apply in.exr out.png --operator agx_blender\n"
+        "  tonewright compare in.exr -o sheet.png\n"
+        "  tonewright bake agx_blender --for resolve -o agx.cube\n"
+        "  tonewright config -o ocio_config\n"
+        "`tonewright COMMAND --help` explains a command. Exit codes: " +
+        exit_codes() + ".");
+    for (const auto add :
+         {add_apply, add_compare, add_info, add_meter, add_sheet, add_chart, add_bake, add_shader,
+          add_config, add_list, add_import, add_eval, add_plot, add_check, add_verify, add_report})
+        add(*program);
+    return program;
 }
 
 Settings ViewOptions::settings() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 class CommandLine;
+/// The command with all subcommands.
+[[nodiscard]] std::unique_ptr<CommandLine> make_command_line();
 
 /// Exit codes of the command.
 enum ExitCode { kOk = 0, kCheckFailed = 1, kUsage = 2, kFile = 3 };

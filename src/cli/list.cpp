@@ -9,10 +9,10 @@
 
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "cli/catalogue.h"
 #include "cli/command.h"
 #include "cli/json.h"
 #include "cli/json_forms.h"
+#include "cli/list.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/suggestions.h"
@@ -403,15 +403,10 @@ struct Options {
     bool inputs = false;
     bool hosts = false;
     bool definition = false;
-    std::string catalogue;
 };
 
 int run_list(const Options& options) {
-    if (!options.catalogue.empty()) {
-        if (!options.op.empty())
-            throw Error("list: operator is " + options.op + "; expected none with --catalogue");
-        write_catalogue(options.catalogue);
-    } else if (options.inputs) {
+    if (options.inputs) {
         if (!options.op.empty())
             throw Error("list: operator is " + options.op + "; expected none with --inputs");
         if (options.json) {
@@ -508,18 +503,6 @@ void add_list(CommandLine& program) {
             .excludes(definition)
             .excludes(inputs);
     hosts.group(contents);
-    command
-        .add("--catalogue", options->catalogue,
-             "write operators.md, operators/ and curves/ into this folder: a page and a plot of "
-             "each operator")
-        .value("FOLDER")
-        .group(format)
-        .excludes(json)
-        .excludes(markdown)
-        .excludes(views)
-        .excludes(inputs)
-        .excludes(hosts)
-        .excludes(definition);
     command.footer(
         "Examples:\n  tonewright list\n  tonewright list hable --json\n"
         "  tonewright list hable --definition > my.tone");

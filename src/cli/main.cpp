@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -18,7 +19,6 @@
 #include "base/strings.h"
 #include "cli/command.h"
 #include "cli/completion.h"
-#include "cli/manual.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "tonewright/definition.h"
@@ -98,15 +98,6 @@ int report(const Problem& problem) {
     }
 }
 
-std::string exit_codes() {
-    std::string codes;
-    for (const ExitMeaning& exit : kExitMeanings) {
-        if (!codes.empty()) codes += ", ";
-        codes += std::to_string(exit.code) + " " + exit.text;
-    }
-    return codes;
-}
-
 /// These variables let OpenColorIO measure with other optimizations, and hide displays, views and
 /// spaces. They override what a caller asks for, and OpenColorIO has no other way around them.
 /// Files and measurements must not depend on them. A library must not change the environment of
@@ -120,30 +111,13 @@ void ignore_overrides_of_opencolorio() {
 int run(int argc, char** argv) {
     const std::string command = argc > 1 ? one_line(argv[1]) + ": " : "";
     try {
-        CommandLine program(
-            "tonewright",
-            "Tone map pictures, and write operators as LUTs, shaders and OpenColorIO configs.",
-            TONEWRIGHT_VERSION);
-        program.footer(
-            "Examples:\n"
-            "  tonewright apply in.exr out.png --operator agx_blender\n"
-            "  tonewright compare in.exr -o sheet.png\n"
-            "  tonewright bake agx_blender --for resolve -o agx.cube\n"
-            "  tonewright config -o ocio_config\n"
-            "`tonewright COMMAND --help` explains a command. Exit codes: " +
-            exit_codes() + ".");
-        for (const auto add : {add_apply, add_compare, add_info, add_meter, add_sheet, add_chart,
-                               add_bake, add_shader, add_config, add_list, add_import, add_eval,
-                               add_plot, add_check, add_verify, add_report})
-            add(program);
+        const std::unique_ptr<CommandLine> program = make_command_line();
         int exit_code = kOk;
         if (argc > 1 && std::string_view(argv[1]) == "complete") {  // for the scripts of shells
-            const std::string text = to_text(complete(program.tables(), {argv + 2, argv + argc}));
+            const std::string text = to_text(complete(program->tables(), {argv + 2, argv + argc}));
             std::fputs(text.c_str(), stdout);
-        } else if (argc == 5 && std::string_view(argv[1]) == "manual") {  // for the build
-            write_manual({program.tables(), argv[3], argv[4]}, argv[2]);
         } else {
-            exit_code = program.run(argc, argv);
+            exit_code = program->run(argc, argv);
         }
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
         return exit_code;

@@ -475,10 +475,13 @@ namespace {
 
 /// The command that prints all options.
 std::string help_command(const CLI::App& command) {
-    return fmt::format("`tonewright {} --help-all`", command.get_name());
+    const CLI::App* const program = command.get_parent();
+    const std::string prefix = program ? program->get_name() + " " : "";
+    return fmt::format("`{}{} --help-all`", prefix, command.get_name());
 }
 
-/// Options that people know from oiiotool, ffmpeg and ImageMagick, and what does that job here.
+/// Options that people know from oiiotool, ffmpeg and ImageMagick or from earlier builds, and what
+/// does that job here.
 std::string hint_of(std::string_view typed) {
     struct Hint {
         std::string_view option;
@@ -521,6 +524,9 @@ std::string hint_of(std::string_view typed) {
         {"-i", "the input is the first argument"},
         {"-y", "an existing output is replaced anyway"},
         {"-n", "use --skip-existing with --frames"},
+        {"--catalogue", "use build/release/bin/tonewright_tools catalogue -o FOLDER"},
+        {"--npm", "use build/release/bin/tonewright_tools npm -o FOLDER"},
+        {"manual", "use build/release/bin/tonewright_tools manual -o FOLDER"},
         {"--saturation", "use --set, or a .tone file; `tonewright list OPERATOR` shows parameters"},
         {"--contrast", "use --set, or a .tone file; `tonewright list OPERATOR` shows parameters"},
     };
@@ -647,8 +653,9 @@ int CommandLine::run(int argc, char** argv) {
         return std::find(list.begin(), list.end(), first) != list.end();
     };
     if (!is_in(names) && !is_in(flags)) {
+        const std::string hint = hint_of(first);
         throw Error("command is " + first + "; expected " + join_choices(names) +
-                    did_you_mean(first, names));
+                    (hint.empty() ? did_you_mean(first, names) : hint));
     }
     const std::string last = words.back();
     try {

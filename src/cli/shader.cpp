@@ -7,10 +7,10 @@
 #include "base/atomic_file.h"
 #include "base/format_number.h"
 #include "base/input_file.h"
+#include "base/little_endian.h"
 #include "base/strings.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
-#include "cli/npm_package.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
 #include "pipeline/stand_ins.h"
@@ -32,7 +32,6 @@ struct Options : ViewOptions {
     std::string curves = "formula";
     bool is_inverse = false;
     bool list = false;
-    bool npm = false;
 };
 
 int list_languages() {
@@ -53,7 +52,7 @@ std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string
     for (const ShaderTexture& texture : shader.textures) {
         const std::filesystem::path path =
             std::filesystem::path(text_file).parent_path() / (texture.name + ".rgba32f");
-        files.push_back({path.string(), texture_bytes(texture)});
+        files.push_back({path.string(), little_endian_bytes(texture.rgba)});
     }
     return files;
 }
@@ -165,19 +164,6 @@ void write_one(Options& options) {
         print_result(request.application->title + ": " + request.application->steps);
 }
 
-/// Every operator, preset and look, with errors that all languages share.
-template <class Write>
-void for_all(const Options& options, const Write& write) {
-    for (const OperatorVariant& variant : all_variants()) {
-        ShaderRequest request;
-        request.tables = tables_of(options);
-        request.curves = curves_of(options);
-        request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
-                                 options.exposure, options.display);
-        write(request, measure_shader(request), reads_lattice(request.view));
-    }
-}
-
 /// In one language or all: FOLDER/LANGUAGE/tw_NAME.EXTENSION.
 void write_all(const Options& options) {
     if (!options.op.empty() || !options.application.empty() || !options.file.empty() ||
@@ -193,7 +179,14 @@ void write_all(const Options& options) {
     std::map<std::string, std::size_t> left_out;
     std::string manifest = "path,operator,function,float_error,guaranteed,vulkan_estimate\n";
     std::size_t count = 0;
-    for_all(options, [&](ShaderRequest request, const ShaderErrors& errors, bool is_lattice) {
+    for (const OperatorVariant& variant : all_variants()) {
+        ShaderRequest request;
+        request.tables = tables_of(options);
+        request.curves = curves_of(options);
+        request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
+                                 options.exposure, options.display);
+        const ShaderErrors errors = measure_shader(request);  // all languages share them
+        const bool is_lattice = reads_lattice(request.view);
         for (const ShaderLanguageInfo& language : languages) {
             if (is_lattice && !language.holds_lattices) {
                 ++left_out[language.id];
@@ -211,7 +204,7 @@ void write_all(const Options& options) {
             for (GeneratedFile& file : texture_files(shader, path))
                 files.push_back(std::move(file));
         }
-    });
+    }
     for (const auto& [language, lattices] : left_out) {
         print_result(
             fmt::format("{}: {} without a shader, because they read lattices, which it "
@@ -223,50 +216,9 @@ void write_all(const Options& options) {
     write_generated_files(options.all, files, "MANIFEST.csv");
 }
 
-/// The npm package, in a folder for `npm pack`.
-void write_npm(const Options& options) {
-    const char* const wrong = options.all.empty()         ? "without --all"
-                              : !options.language.empty() ? "with --language"
-                              : options.given.contains("--display")
-                                  ? "with --display"  // three.js encodes its pictures itself
-                                  : nullptr;
-    if (wrong)
-        throw Error(fmt::format("shader: --npm is given {}; expected --all FOLDER --npm", wrong));
-    require_writable_folder(options.all);
-    std::vector<NpmOperator> operators;
-    for_all(options, [&](ShaderRequest request, const ShaderErrors& errors, bool is_lattice) {
-        const ResolvedOperator& op = request.view.op;
-        NpmOperator& entry = operators.emplace_back();
-        entry.title = op.op->title;
-        if (op.preset) entry.title += ", " + op.preset->title;
-        if (!op.params.look().empty()) entry.title += ", look " + op.params.look();
-        request.language = ShaderLanguage::glsl_es;
-        entry.glsl = write_shader(request, &errors);
-        request.language = ShaderLanguage::wgsl;
-        entry.wgsl = write_shader(request, &errors);
-        if (is_lattice) return;
-        request.application = &find_shader_application("threejs");
-        entry.threejs = write_shader(request, &errors);
-        request.application = &find_shader_application("threejs-tsl");
-        entry.tsl = write_shader(request, &errors);
-    });
-    std::vector<GeneratedFile> files = npm_package(operators);
-    // The next run removes files that it no longer writes.
-    std::string manifest = "path\n";
-    for (const GeneratedFile& file : files)
-        manifest += file.path + "\n";
-    files.push_back({"MANIFEST.csv", manifest});
-    print_result(fmt::format("{}: npm package tonewright-shaders " TONEWRIGHT_VERSION
-                             ", {} operators, presets and looks",
-                             options.all, operators.size()));
-    write_generated_files(options.all, files, "MANIFEST.csv");
-}
-
 int run_shader(Options& options) {
     if (options.list) return list_languages();
-    if (options.npm) {
-        write_npm(options);
-    } else if (options.all.empty()) {
+    if (options.all.empty()) {
         write_one(options);
     } else {
         write_all(options);
@@ -305,10 +257,6 @@ void add_shader(CommandLine& program) {
         .value("FOLDER")
         .group(output);
     command
-        .add_flag("--npm", options->npm,
-                  "with --all: write the npm package tonewright-shaders, for `npm pack`")
-        .group(output);
-    command
         .add("--uniforms", options->uniforms,
              "arguments after the color: exposure, and live parameters (see `tonewright list "
              "OPERATOR`)")
@@ -345,8 +293,7 @@ void add_shader(CommandLine& program) {
         "  tonewright shader agx_threejs --language glsl -o agx.glsl\n"
         "  tonewright shader hable --language hlsl --uniforms white -o hable.hlsl\n"
         "  tonewright shader agx_threejs --for threejs -o agx.js\n"
-        "  tonewright shader khronos_neutral --language c --display srgb -o neutral.h\n"
-        "  tonewright shader --all build/npm --npm");
+        "  tonewright shader khronos_neutral --language c --display srgb -o neutral.h");
     command.action([options, command] {
         options->given = command.given();
         take_lut_options("shader", options->lut, *options, false);

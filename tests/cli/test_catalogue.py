@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The operator catalogue of `tonewright list --catalogue`: nothing is missing, and what it shows is so.
+"""The operator catalogue of `tonewright_tools catalogue`: nothing is missing, and what it shows is so.
 
     python3 tests/cli/test_catalogue.py build/release/bin/tonewright
 
@@ -484,18 +484,16 @@ def check_committed(report, folder):
 
 def check_errors(report, command, scratch):
     (scratch / "file").write_text("")
-    for code, arguments, words in ((2, ["--catalogue", scratch / "new", "hable"], "operator is hable"),
-                                   (2, ["--catalogue", scratch / "new", "--json"], "--json"),
-                                   (2, ["--catalogue", scratch / "new", "--markdown"], "--markdown"),
-                                   (2, ["--catalogue", scratch / "new", "--views"], "--views")):
-        done = subprocess.run([command, "list", *arguments], capture_output=True, text=True, check=False)
-        report.check(f"list {' '.join(map(str, arguments))}", done.returncode == code and words in done.stderr
+    for what, line, code, words in (
+            ("the old option", [command, "list", "--catalogue", scratch / "new"], 2, "use build/release/bin/tonewright_tools catalogue -o"),
+            ("a file as the folder", [f"{command}_tools", "catalogue", "-o", scratch / "file"], 3, str(scratch / "file")),
+            ("no folder", [f"{command}_tools", "catalogue"], 2, "catalogue: -o is missing; expected -o FOLDER"),
+            ("another tool", [f"{command}_tools", "catalog"], 2, "did you mean catalogue?"),
+            ("the old command", [command, "manual"], 2, "use build/release/bin/tonewright_tools manual -o")):
+        done = subprocess.run(line, capture_output=True, text=True, check=False)
+        report.check(f"error: {what}", done.returncode == code and words in done.stderr
                      and done.stderr.startswith("tonewright: ") and done.stderr.count("\n") == 1
                      and not (scratch / "new").exists(), done.stderr)
-    done = subprocess.run([command, "list", "--catalogue", scratch / "file"], capture_output=True, text=True,
-                          check=False)
-    report.check("list --catalogue where a file is", done.returncode == 3 and str(scratch / "file") in done.stderr
-                 and done.stderr.count("\n") == 1, done.stderr)
 
 
 def main():
@@ -520,7 +518,7 @@ def main():
         (folder / "operators" / "old.md").write_text("of an operator that is gone")
         (folder / "MANIFEST.csv").write_text("path\nown.md\n")
         (folder / "own.md").write_text("of somebody else")
-        run(command, "list", "--catalogue", folder)
+        run(f"{command}_tools", "catalogue", "-o", folder)
         report.check("page and plot of an operator that is gone are removed, nothing else", not (curves / "old.svg").exists()
                      and not (folder / "operators" / "old.md").exists()
                      and (curves / "own.txt").exists() and (folder / "own.md").exists())

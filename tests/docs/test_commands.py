@@ -29,7 +29,7 @@ from operators.defects import OPERATORS as DEFECTS  # noqa: E402
 from pictures import PROJECT, Report  # noqa: E402
 from test_into import ACES  # noqa: E402
 
-PROGRAMS = ("tonewright oiiotool ffmpeg ./run export echo python3 cmake ctest npm g++ ssh iinfo idiff maketx iv rv blender "
+PROGRAMS = ("tonewright build/release/bin/tonewright_tools oiiotool ffmpeg ./run export echo python3 cmake ctest npm g++ ssh iinfo idiff maketx iv rv blender "
             "dpkg-buildpackage tests/install/release.sh tests/install/debian.sh").split()
 COMMAND = re.compile(rf"(\$ )?((?:\w+=\S+ )?(?:{'|'.join(map(re.escape, PROGRAMS))})(?: .*)?)")
 GENERATED = {DOCS / "operators.md", *(DOCS / "operators").glob("*.md")}
@@ -62,7 +62,7 @@ NOT_RUN = {
     "rv ": "needs RV",
     "tonewright apply in.exr out.png --operator tony.dds": "needs that LUT of Tony McMapface; the test cli.lut_operators reads such files",
     "npm ": "the test shader.threejs packs and installs the package",
-    "tonewright shader --all build/npm": "the test shader.threejs runs it",
+    "build/release/bin/tonewright_tools npm": "the test shader.threejs runs it",
     "tonewright config -o everything": "takes minutes; the test parity.artifacts compares such a config",
     "tonewright verify --config": "takes minutes; the test parity.verify_config runs it",
     "tonewright apply shot.%04d.exr out.%04d.png --operator agx_blender": "the test farm runs it",

@@ -47,8 +47,8 @@ def run(*arguments, folder: pathlib.Path) -> str:
 
 
 def install_package(tonewright: str, folder: pathlib.Path) -> pathlib.Path:
-    """Where npm puts the package that the command writes."""
-    run(tonewright, "shader", "--all", folder / "package", "--npm", "-q", folder=folder)
+    """Where npm puts the package that the tool writes."""
+    run(f"{tonewright}_tools", "npm", "-o", folder / "package", "-q", folder=folder)
     tarball = folder / run("npm", "pack", "--silent", "./package", folder=folder).strip()
     page = folder / "page"
     page.mkdir()

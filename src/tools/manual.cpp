@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/manual.h"
+#include "tools/manual.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,8 +11,8 @@
 #include "base/input_file.h"
 #include "base/strings.h"
 #include "cli/command.h"
-#include "cli/roff.h"
 #include "tonewright/error.h"
+#include "tools/roff.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/roff.h"
+#include "tools/roff.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/catalogue.h"
+#include "tools/catalogue.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +13,7 @@
 
 #include "base/atomic_file.h"
 #include "base/format_number.h"
+#include "cli/list.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "plot/curve_plot.h"
@@ -603,70 +604,60 @@ std::string with_one_end(std::string text) {
     return text;
 }
 
+/// A folder with a manifest of its own, because the folder of documents has other files, too.
+class Subfolder {
+  public:
+    explicit Subfolder(const std::string& path) : path_(path) { require_writable_folder(path); }
+
+    void add(const std::string& name, const std::string& shows, std::string text) {
+        files_.push_back({name, std::move(text)});
+        manifest_ += fmt::format("{},{}\n", name, shows);
+    }
+    void write() {
+        files_.push_back({kManifest, manifest_});
+        write_generated_files(path_, files_, kManifest);
+    }
+
+  private:
+    static constexpr const char* kManifest = "MANIFEST.csv";
+    std::string path_;
+    std::string manifest_ = "path,shows\n";
+    std::vector<GeneratedFile> files_;
+};
+
 }  // namespace
 
-std::vector<GeneratedFile> make_catalogue() {
-    std::vector<GeneratedFile> files;
-    std::string plots = "path,shows\n";
-    std::string pages = "path,shows\n";
-    const auto add_plot = [&](const std::string& name, const std::string& shows, std::string svg) {
-        files.push_back({"curves/" + name, std::move(svg)});
-        plots += fmt::format("{},{}\n", name, shows);
-    };
-    const auto add_page = [&](const std::string& name, const std::string& shows, std::string text) {
-        files.push_back({"operators/" + name, with_one_end(std::move(text))});
-        pages += fmt::format("{},{}\n", name, shows);
+void write_catalogue(const std::string& folder) {
+    Subfolder plots(folder + "/curves");
+    Subfolder pages(folder + "/operators");
+    const auto add_page = [&](const std::string& id, std::string text) {
+        pages.add(id + ".md", id, with_one_end(std::move(text)));
     };
     std::vector<DialectGroup> groups = dialect_groups();
     for (const Operator& op : all_operators()) {
-        add_plot(op.id + ".svg", op.id, to_svg(plot_of(op)));
-        add_page(op.id + ".md", op.id,
-                 operator_section(op,
-                                  fmt::format("![Curve of {}](../curves/{}.svg)\n\n{}", op.title,
-                                              op.id, measured_line(op)),
-                                  true) +
-                     links_of(op, groups));
+        plots.add(op.id + ".svg", op.id, to_svg(plot_of(op)));
+        const std::string plot =
+            fmt::format("![Curve of {}](../curves/{}.svg)\n\n", op.title, op.id);
+        add_page(op.id,
+                 operator_section(op, plot + measured_line(op), true) + links_of(op, groups));
     }
     for (const Operator& op : local_operators())
-        add_page(op.id + ".md", op.id, operator_section(op, {}, true) + links_of(op, groups));
+        add_page(op.id, operator_section(op, {}, true) + links_of(op, groups));
     if (!groups.empty()) {
         const std::vector<float> samples = non_negative_samples();
         std::string page = dialect_introduction(samples.size() / 3);
         for (DialectGroup& group : groups) {
-            add_plot("dialects_" + group.slug + ".svg", group.name, to_svg(plot_of(group)));
-            add_plot("dialects_" + group.slug + "_colors.svg", group.name,
-                     to_svg(colors_of(group)));
+            const std::string name = "dialects_" + group.slug;
+            plots.add(name + ".svg", group.name, to_svg(plot_of(group)));
+            plots.add(name + "_colors.svg", group.name, to_svg(colors_of(group)));
             page += dialect_section(group, samples);
         }
-        add_page("dialects.md", "dialects", page);
+        add_page("dialects", page);
     }
-    files.push_back({"curves/MANIFEST.csv", plots});
-    files.push_back({"operators/MANIFEST.csv", pages});
-    files.push_back(
-        {"operators.md", with_one_end(kIntroduction + index_section(groups) + legend())});
-    return files;
-}
-
-void write_catalogue(const std::string& folder) {
-    // Each subfolder has its own manifest, because the folder of documents has other files, too.
-    std::map<std::string, std::vector<GeneratedFile>> subfolders;
-    std::vector<GeneratedFile> index;
-    for (const char* name : {"/curves", "/operators"})
-        require_writable_folder(folder + name);
-    for (GeneratedFile& file : make_catalogue()) {
-        const std::size_t slash = file.path.find('/');
-        if (slash == std::string::npos) {
-            index.push_back(std::move(file));
-        } else {
-            subfolders[file.path.substr(0, slash)].push_back(
-                {file.path.substr(slash + 1), std::move(file.contents)});
-        }
-    }
-    for (const auto& [name, files] : subfolders)
-        write_generated_files((std::filesystem::path(folder) / name).string(), files,
-                              "MANIFEST.csv");
-    for (const GeneratedFile& file : index)
-        write_text_atomically(folder + "/" + file.path, file.contents);
+    plots.write();
+    pages.write();
+    write_text_atomically(folder + "/operators.md",
+                          with_one_end(kIntroduction + index_section(groups) + legend()));
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The manual pages, from the text of `--help`. The build runs `tonewright manual` to write them.
+// The manual pages, from the text of `--help`. help2man does not make them: it fills the lines of
+// examples, which nobody can copy then, and has no exit codes, variables, or page of .tone files.
 #pragma once
 
 #include <string>

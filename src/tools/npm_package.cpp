@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/npm_package.h"
+#include "tools/npm_package.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
+#include "base/atomic_file.h"
 #include "base/format_number.h"
 #include "base/little_endian.h"
 #include "base/strings.h"
 #include "cli/json.h"
+#include "cli/messages.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/registry.h"
+#include "tonewright/shader.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -129,6 +135,37 @@ std::string template_literal(const std::string& text) {
     return quoted + "`";
 }
 
+/// An operator in the package. The name of its export is that of the function without `tw_`.
+struct NpmOperator {
+    std::string title;
+    Shader glsl;  // GLSL ES
+    Shader wgsl;
+    // The files for three.js, which hold no textures.
+    std::optional<Shader> threejs;
+    std::optional<Shader> tsl;
+};
+
+NpmOperator npm_operator(const OperatorVariant& variant) {
+    ShaderRequest request;
+    request.view = make_view(resolve_operator(variant.name, {}, variant.look), "lin_rec709", 0,
+                             std::string(kLinearOutput));  // three.js encodes its pictures itself
+    const ShaderErrors errors = measure_shader(request);
+    const ResolvedOperator& op = request.view.op;
+    NpmOperator entry = {op.op->title, {}, {}, {}, {}};
+    if (op.preset) entry.title += ", " + op.preset->title;
+    if (!op.params.look().empty()) entry.title += ", look " + op.params.look();
+    request.language = ShaderLanguage::glsl_es;
+    entry.glsl = write_shader(request, &errors);
+    request.language = ShaderLanguage::wgsl;
+    entry.wgsl = write_shader(request, &errors);
+    if (reads_lattice(request.view)) return entry;
+    request.application = &find_shader_application("threejs");
+    entry.threejs = write_shader(request, &errors);
+    request.application = &find_shader_application("threejs-tsl");
+    entry.tsl = write_shader(request, &errors);
+    return entry;
+}
+
 class Package {
   public:
     void add(const NpmOperator& op) {
@@ -211,7 +248,7 @@ class Package {
     std::string facts(const NpmOperator& op, const std::string& id) {
         std::string lattices;
         for (const ShaderTexture& texture : op.glsl.textures) {
-            std::string bytes = texture_bytes(texture);
+            std::string bytes = little_endian_bytes(texture.rgba);
             const std::string path = "lattices/" + content_hash(bytes) + ".rgba32f";
             lattices += fmt::format(
                 "\n        {{ name: '{}', edge: {}, url: new URL('../{}', import.meta.url) }},",
@@ -249,15 +286,22 @@ class Package {
 
 }  // namespace
 
-std::string texture_bytes(const ShaderTexture& texture) {
-    return little_endian_bytes(texture.rgba);
-}
-
-std::vector<GeneratedFile> npm_package(const std::vector<NpmOperator>& operators) {
+void write_npm_package(const std::string& folder) {
+    require_writable_folder(folder);
     Package package;
-    for (const NpmOperator& op : operators)
-        package.add(op);
-    return package.finish();
+    const std::vector<OperatorVariant> variants = all_variants();
+    for (const OperatorVariant& variant : variants)
+        package.add(npm_operator(variant));
+    std::vector<GeneratedFile> files = package.finish();
+    // The next run removes files that it no longer writes.
+    std::string manifest = "path\n";
+    for (const GeneratedFile& file : files)
+        manifest += file.path + "\n";
+    files.push_back({"MANIFEST.csv", manifest});
+    print_result(fmt::format("{}: npm package tonewright-shaders " TONEWRIGHT_VERSION
+                             ", {} operators, presets and looks",
+                             folder, variants.size()));
+    write_generated_files(folder, files, "MANIFEST.csv");
 }
 
 TONEWRIGHT_NAMESPACE_END

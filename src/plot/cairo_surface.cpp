@@ -48,11 +48,12 @@ void stroke_words(cairo_t* cairo, std::string_view ascii, double stroke_width) {
         Stroke last = {};
         for (const Stroke& s : glyph.strokes) {
             const bool continues = &s != glyph.strokes.data() && s.x0 == last.x1 && s.y0 == last.y1;
-            if (!continues) cairo_move_to(cairo, left + double{s.x0}, double{s.y0});
-            cairo_line_to(cairo, left + double{s.x1}, double{s.y1});
+            if (!continues)
+                cairo_move_to(cairo, left + static_cast<double>(s.x0), static_cast<double>(s.y0));
+            cairo_line_to(cairo, left + static_cast<double>(s.x1), static_cast<double>(s.y1));
             last = s;
         }
-        left += double{glyph.advance};
+        left += static_cast<double>(glyph.advance);
     }
     cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
@@ -71,7 +72,7 @@ cairo_status_t draw_glyph(cairo_scaled_font_t* /*font*/, unsigned long code, cai
     const Lettering letters = lettering_of(kIsHeading ? kHeading : kPlain, {});
     cairo_scale(cairo, 1 / kFontSize, -1 / kFontSize);
     stroke_words(cairo, {&character, 1}, letters.stroke_width / letters.unit);
-    extents->x_advance = double{glyph_of(character).advance} / kFontSize;
+    extents->x_advance = static_cast<double>(glyph_of(character).advance) / kFontSize;
     return CAIRO_STATUS_SUCCESS;
 }
 

@@ -402,8 +402,14 @@ std::string line_color(std::size_t index, PlotTheme theme) {
 }
 
 std::vector<double> line_dashes(std::size_t index) {
-    static const std::array<std::vector<double>, 3> kDashes = {{{}, {6, 3}, {2, 2}}};
-    return kDashes[index / 8 % kDashes.size()];
+    switch (index / 8 % 3) {
+        case 0:
+            return {};
+        case 1:
+            return {6, 3};
+        default:
+            return {2, 2};
+    }
 }
 
 double height_of(const CurvePlot& plot) { return Layout(plot).height; }

@@ -170,6 +170,9 @@ class CairoSurface : public PlotSurface {
         cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_MITER);
     }
 
+    /// The first error of all calls.
+    [[nodiscard]] cairo_status_t status() const { return cairo_status(cairo_.get()); }
+
   private:
     /// @param text  `#rgb` or `#rrggbb`
     void set_color(std::string_view text) {
@@ -208,11 +211,10 @@ void draw(const CurvePlot& plot, cairo_surface_t* surface, double scale) {
     require_success(cairo_surface_status(surface));
     CairoSurface target(surface, scale, plot.theme);
     draw(plot, target);
+    require_success(target.status());
 }
 
-}  // namespace
-
-std::string to_pdf(const CurvePlot& plot, double width) {
+std::string draw_pdf(const CurvePlot& plot, double width) {
     std::string file;
     const auto append = [](void* to, const unsigned char* data, unsigned size) {
         try {
@@ -232,6 +234,16 @@ std::string to_pdf(const CurvePlot& plot, double width) {
     draw(plot, surface.get(), scale);
     cairo_surface_finish(surface.get());
     require_success(cairo_surface_status(surface.get()));
+    return file;
+}
+
+}  // namespace
+
+std::string to_pdf(const CurvePlot& plot, double width) {
+    std::string file = draw_pdf(plot, width);
+    // If memory runs out while cairo writes the fonts, the file is damaged, and cairo reports
+    // success. A second file has other bytes then.
+    if (draw_pdf(plot, width) != file) throw std::bad_alloc();
     return file;
 }
 

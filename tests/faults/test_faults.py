@@ -39,6 +39,8 @@ JOBS = {
     "eval": (["eval", "hable"], None),
     "bake": (["bake", "hable", "--input", "lin_rec709", "--size", "17", "-q", "-o", "out.cube"], "out.cube"),
     "shader": (["shader", "hable", "--language", "glsl", "-q", "-o", "out.glsl"], "out.glsl"),
+    "plot_pdf": (["plot", "hable", "-o", "out.pdf"], "out.pdf"),
+    "plot_png": (["plot", "hable", "--width", "320", "-o", "out.png"], "out.png"),
     "apply_png": (["apply", "in.exr", "out.png", "--operator", "hable", "--threads", "1"], "out.png"),
     "apply_exr": (["apply", "in.exr", "out.exr", "--operator", "hable", "--display", "linear", "--threads", "1"], "out.exr"),
 }

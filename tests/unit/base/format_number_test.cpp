@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 
 #include "base/random.h"
+#include "lut/clf.h"
+#include "unit/lut/lut_cases.h"
 
 namespace tonewright {
 namespace {
@@ -55,6 +59,110 @@ TEST(RoundedUp, IsNeverLessAndLessThanOneUnitMore) {
             ASSERT_NEAR(round_up(x, digits), printed, 1e-12 * x) << shortest(x);
         }
     }
+}
+
+/// Floats that are hard to print: of every size, next to powers of ten, denormal.
+std::vector<float> hard_floats(std::size_t count) {
+    std::vector<float> values = {
+        0,      1,     -1,  0.1F, 1.0F / 3, 16777217.0F, 1e-45F, 1.1754944e-38F, 3.4028235e38F,
+        -65504, 1e-4F, 1e9F};
+    for (int power = -44; power <= 38; ++power) {
+        const auto ten = static_cast<float>(std::pow(10.0, power));
+        values.push_back(std::nextafterf(ten, 0));
+        values.push_back(std::nextafterf(ten, 1e30F));
+    }
+    SampleRandom random(23);
+    while (values.size() < count) {
+        const auto x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
+        if (std::isfinite(x)) values.push_back(x);
+    }
+    values.resize(count);
+    return values;
+}
+
+TEST(Numbers, RoundTripInNineDigitsWithoutExponents) {
+    for (const float x : hard_floats(200000)) {
+        std::string text;
+        append_number(text, x);
+        ASSERT_EQ(text.find_first_not_of("-0123456789."), std::string::npos) << text;
+        ASSERT_TRUE(text.find('.') == std::string::npos || text.back() != '0') << text;
+        const float back = std::strtof(text.c_str(), nullptr);
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(back), std::bit_cast<std::uint32_t>(x)) << text;
+    }
+}
+
+TEST(Numbers, AreShortAndHaveNoMinusZero) {
+    const auto text_of = [](float x) {
+        std::string text = "x ";
+        append_number(text, x);
+        return text;
+    };
+    EXPECT_EQ(text_of(0), "x 0");
+    EXPECT_EQ(text_of(-0.0F), "x 0");
+    EXPECT_EQ(text_of(1), "x 1");
+    EXPECT_EQ(text_of(100), "x 100") << "zeros before the point stay";
+    EXPECT_EQ(text_of(0.5F), "x 0.5");
+    EXPECT_EQ(text_of(0.1F), "x 0.100000001");
+    std::string text;
+    append_decimals(text, -0.000001F, 5);
+    text += ' ';
+    append_decimals(text, 0.123456F, 5);
+    EXPECT_EQ(text, "0 0.12346");
+}
+
+TEST(Numbers, NearOnesAreTheShortestWithinTheTolerance) {
+    const auto text_of = [](double value, double tolerance) {
+        std::string text;
+        append_near(text, value, tolerance);
+        return text;
+    };
+    EXPECT_EQ(text_of(0.123456, 1e-7), ".123456");
+    EXPECT_EQ(text_of(0.123456, 1e-3), ".123");
+    EXPECT_EQ(text_of(0.1996, 1e-3), ".2");
+    EXPECT_EQ(text_of(-0.25, 1e-9), "-.25");
+    EXPECT_EQ(text_of(4096, 1e-3), "4096");
+    EXPECT_EQ(text_of(1234.5, 0.01), "1234.5");
+    EXPECT_EQ(text_of(65504, 100), "65500") << "as long as 655e2";
+    EXPECT_EQ(text_of(65504, 1000), "66e3");
+    EXPECT_EQ(text_of(1.2e-12, 1e-14), "12e-13");
+    EXPECT_EQ(text_of(-1e-9, 1e-8), "0");
+    EXPECT_EQ(text_of(0, 1e-8), "0");
+    for (const float x : hard_floats(200000)) {
+        const auto value = static_cast<double>(x);
+        const double tolerance = precision_of(value);
+        const double read = std::strtod(text_of(value, tolerance).c_str(), nullptr);
+        EXPECT_NEAR(read, value, tolerance * (1 + 1e-9)) << text_of(value, tolerance);
+    }
+}
+
+TEST(Numbers, OneDigitRoundsInTheGivenDirection) {
+    const auto text_of = [](double value, bool is_up) {
+        std::string text;
+        append_one_digit(text, value, is_up);
+        return text;
+    };
+    EXPECT_EQ(text_of(8192, true), "9e3");
+    EXPECT_EQ(text_of(8192, false), "0");
+    EXPECT_EQ(text_of(-8192, true), "0");
+    EXPECT_EQ(text_of(-8192, false), "-9e3");
+    EXPECT_EQ(text_of(0.95, true), "1");
+    EXPECT_EQ(text_of(0.5, true), ".5");
+    EXPECT_EQ(text_of(0.5, false), "0");
+    EXPECT_EQ(text_of(0, true), "0");
+}
+
+TEST(Numbers, LoseTheZeroBeforeThePoint) {
+    const auto short_of = [](std::string text) {
+        text.insert(0, "1 ");
+        drop_zero_before_point(text, 2);
+        return text.substr(2);
+    };
+    EXPECT_EQ(short_of("0.25"), ".25");
+    EXPECT_EQ(short_of("-0.25"), "-.25");
+    EXPECT_EQ(short_of("0"), "0");
+    EXPECT_EQ(short_of("10.5"), "10.5");
+    EXPECT_EQ(short_of("-1e-05"), "-1e-05");
+    EXPECT_EQ(short_of(""), "");
 }
 
 }  // namespace

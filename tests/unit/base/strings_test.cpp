@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "lut/clf.h"
+
 namespace tonewright {
 namespace {
 
@@ -29,6 +31,17 @@ TEST(OneLine, KeepsUtf8AndReplacesOtherBytes) {
 TEST(OneLine, IsLimited) {
     EXPECT_EQ(one_line(std::string(5000, 'x')), std::string(2000, 'x') + "...");
     EXPECT_EQ(one_line("abc", 3), "abc");
+}
+
+TEST(Numbers, HashIsFnv1a) {
+    // The published test values of FNV-1a, 32 bits.
+    EXPECT_EQ(content_hash(""), "811c9dc5");
+    EXPECT_EQ(content_hash("a"), "e40c292c");
+    EXPECT_EQ(content_hash("foobar"), "bf9cf968");
+}
+
+TEST(Numbers, XmlIsEscaped) {
+    EXPECT_EQ(xml_escape("a < b & c > \"d\""), "a &lt; b &amp; c &gt; &quot;d&quot;");
 }
 
 }  // namespace

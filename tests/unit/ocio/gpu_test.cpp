@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ocio/gpu.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "base/random.h"
 #include "full_counts.h"
 #include "measure/sample_set.h"
-#include "ocio/gpu.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 
 #include "tonewright/tonemap.h"
@@ -97,9 +96,6 @@ SceneStatistics by_definition(const ImageBuf& picture) {
     return s;
 }
 
-// ---------------------------------------------------------------------------------------------
-// What is measured
-
 TEST(SceneStatistics, OfGraysByHand) {
     // Powers of 2, whose logarithms cancel: the geometric mean of 1/4, 1/2, 4 and 8 is 2^0.5.
     const double mean = 12.75 / 4;
@@ -189,9 +185,6 @@ TEST(SceneStatistics, EqualTheirDefinition) {
     expect_statistics(measure_scene(picture), by_definition(picture), 4e-15);
 }
 
-// ---------------------------------------------------------------------------------------------
-// Which pixels, and from where
-
 TEST(SceneStatistics, DoNotDependOnThreads) {
     const ImageBuf picture =
         make_picture(make_spec(211, 997, {"R", "G", "B", "A"}, TypeDesc::HALF), 40);
@@ -253,9 +246,6 @@ TEST(SceneStatistics, OfVolumes) {
     expect_statistics(measure_scene(picture), by_definition(picture));
 }
 
-// ---------------------------------------------------------------------------------------------
-// Alpha
-
 TEST(SceneStatistics, AssociatedColorIsUnpremultipliedAndZeroAlphaIsLeftOut) {
     ImageBuf picture = row_of(
         {{0.5F, 0.5F, 0.5F, 0.25F}, {8, 8, 8, 1}, {100, 100, 100, 0}, {100, 100, 100, kNan}});
@@ -283,9 +273,6 @@ TEST(SceneStatistics, GrayAndAlpha) {
     expect_statistics(measure_scene(row_of({{0.5F, 0.25F}, {8, 1}, {100, 0}})),
                       {4, 5, 2, 8, {5, 5, 5}, {8, 8, 8}});
 }
-
-// ---------------------------------------------------------------------------------------------
-// Errors
 
 TEST(SceneStatistics, ErrorsAreThrown) {
     const auto error_of = [](const ImageBuf& picture, std::string_view input = "lin_rec709") {

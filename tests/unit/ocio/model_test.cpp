@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What a config says before it becomes OpenColorIO objects: the rules that give files their spaces.
+#include "ocio/model.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,9 +13,10 @@
 #include <vector>
 
 #include "ocio/config_builder.h"
-#include "ocio/model.h"
 #include "ocio/operator_facts.h"
 #include "pipeline/stand_ins.h"
+#include "tonewright/engine.h"
+#include "tonewright/ocio.h"
 #include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -172,6 +175,134 @@ TEST(ViewDescriptions, NameTheConstantsOfOperatorsThatMeasure) {
     // What the user sets is no stand-in.
     EXPECT_EQ(stand_ins(resolve_operator("drago", {{"maximum", "7"}})).find("maximum"),
               std::string::npos);
+}
+
+std::string lower(std::string text) {
+    for (char& c : text)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    return text;
+}
+
+TEST(ConfigModel, NamesFitApplications) {
+    const ConfigModel model = make_config_model({.views = {"all"}});
+    std::set<std::string> taken;
+    const auto claim = [&](const std::string& name) {
+        EXPECT_LE(name.size(), 63U) << name << ": Blender cuts it";
+        EXPECT_TRUE(taken.insert(lower(name)).second) << name << " twice: OCIO ignores case";
+        for (const char c : name)
+            EXPECT_TRUE(c >= 32 && c < 127) << name;
+    };
+    for (const auto& [role, space] : model.roles)
+        claim(role);
+    for (const ConfigModel::Space& space : model.spaces) {
+        claim(space.name);
+        for (const std::string& alias : space.aliases)
+            claim(alias);
+        EXPECT_FALSE(space.description.empty()) << space.name;
+    }
+    std::set<std::string> views = {lower(kUntonemappedView), lower(kRawView)};
+    for (const ConfigModel::View& view : model.views) {
+        EXPECT_LE(view.name.size(), 63U) << view.name;
+        EXPECT_TRUE(views.insert(lower(view.name)).second) << view.name;
+    }
+}
+
+TEST(ConfigModel, StandardViewsBeginWithAgxAndEndWithRaw) {
+    const ConfigModel model = make_config_model();
+    ASSERT_GE(model.views.size(), 12U);
+    // Blender's names.
+    EXPECT_EQ(model.views[0].name, "AgX");
+    EXPECT_EQ(model.views[1].name, "AgX Punchy");
+    for (const char* name :
+         {"ACES 1.3", "ACES 2.0", "Khronos PBR Neutral", "False Color", "Standard"}) {
+        EXPECT_TRUE(std::any_of(model.views.begin(), model.views.end(), [&](const auto& v) {
+            return v.name == name;
+        })) << name;
+    }
+    ASSERT_FALSE(model.looks.empty());
+    EXPECT_TRUE(std::any_of(model.looks.begin(), model.looks.end(),
+                            [](const auto& look) { return look.name == "AgX - Punchy"; }));
+}
+
+TEST(ConfigModel, ALookBeforeTheOperatorIsTheOperatorWithTheLook) {
+    const ConfigModel model = make_config_model();
+    for (const ConfigModel::Look& look : model.looks) {
+        SCOPED_TRACE(look.name);
+        const auto found = std::find_if(
+            look.op->looks.begin(), look.op->looks.end(),
+            [&](const Look& l) { return look.name == look.op->view + " - " + l.title; });
+        ASSERT_NE(found, look.op->looks.end());
+        Pipeline both = look.stages;
+        const Pipeline plain = resolve_operator(look.op->id).build();
+        both.insert(both.end(), plain.begin(), plain.end());
+        const ReferenceEngine apart(both);
+        const ReferenceEngine whole(resolve_operator(look.op->id, {}, found->id).build());
+        for (const Vector3& v : {Vector3{0.18, 0.18, 0.18}, Vector3{4, 0.1, -0.02},
+                                 Vector3{0.001, 0.5, 30}, Vector3{0, 0, 0}})
+            EXPECT_EQ(apart(v), whole(v));
+    }
+}
+
+TEST(ConfigModel, ViewsAreChosenByNameOperatorAndPreset) {
+    const ConfigModel model =
+        make_config_model({.views = {"hable", "agx punchy", "reinhard:luminance"},
+                           .displays = {"rec1886"},
+                           .looks = {"AgX - Greyscale"},
+                           .working = "lin_ap1",
+                           .custom = {{"Studio", "reinhard_extended:white=6"}},
+                           .exposure_stops = {-1}});
+    std::vector<std::string> names;
+    for (const auto& view : model.views)
+        names.push_back(view.name);
+    const std::string luminance = names.at(2);
+    EXPECT_TRUE(luminance.starts_with("Reinhard ")) << luminance;
+    EXPECT_EQ(names, (std::vector<std::string>{"Hable", "AgX Punchy", luminance, "Studio",
+                                               "Hable -1 stop", "AgX Punchy -1 stop",
+                                               luminance + " -1 stop", "Studio -1 stop"}));
+    EXPECT_EQ(model.views[3].op.params.number("white"), 6);
+    ASSERT_EQ(model.displays.size(), 1U);
+    EXPECT_EQ(model.displays[0]->id, "rec1886");
+    ASSERT_EQ(model.looks.size(), 1U);
+    EXPECT_EQ(model.default_space, "ACEScg");
+    EXPECT_THROW((void)make_config_model({.views = {"AgY"}}), Error);
+    EXPECT_THROW((void)make_config_model({.looks = {"AgX - Funky"}}), Error);
+    EXPECT_THROW((void)make_config_model({.displays = {"crt"}}), Error);
+    EXPECT_THROW((void)make_config_model({.custom = {{"Hable", "reinhard"}}}), Error)
+        << "a name twice";
+    EXPECT_THROW((void)make_config_model({.custom = {{"Raw", "reinhard"}}}), Error) << "ours";
+}
+
+TEST(ConfigModel, HasEveryOperatorDisplayAndSpace) {
+    const ConfigModel model = make_config_model({.views = {"all"}});
+    EXPECT_EQ(model.displays.size(), all_displays().size());
+    for (const Operator& op : all_operators()) {
+        EXPECT_EQ(std::count_if(model.views.begin(), model.views.end(),
+                                [&](const auto& v) { return v.op.op == &op && v.name == op.view; }),
+                  1)
+            << op.id;
+    }
+    const auto has_space = [&](const std::string& name) {
+        return std::any_of(model.spaces.begin(), model.spaces.end(),
+                           [&](const auto& s) { return s.name == name; });
+    };
+    for (const InputSpace& space : all_input_spaces()) {
+        EXPECT_EQ(has_space(space.title), !space.is_camera) << space.id;
+        EXPECT_EQ(config_space_name(space.id), space.title);
+    }
+    for (const Display& display : all_displays())
+        EXPECT_TRUE(has_space(display.title)) << display.id;
+    for (const auto& [role, space] : model.roles)
+        EXPECT_TRUE(has_space(space)) << role << " is " << space;
+    for (const auto& rule : model.file_rules)
+        EXPECT_TRUE(has_space(rule.space)) << rule.name << " is " << rule.space;
+    EXPECT_TRUE(has_space(model.default_space));
+    // Roles that OCIO or applications do not start without.
+    for (const char* role : {"scene_linear", "aces_interchange", "cie_xyz_d65_interchange", "data",
+                             "color_picking", "texture_paint", "default_byte", "default_float"}) {
+        EXPECT_TRUE(std::any_of(model.roles.begin(), model.roles.end(), [&](const auto& r) {
+            return r.first == role;
+        })) << role;
+    }
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "engine/simd_program.h"
+
 //
 // SimdEngine against ReferenceEngine and the C library, for every instruction set that this machine
 // has. Bounds: 2 units in the last place for the elementary functions, 1e-6 of the code value (its
@@ -17,7 +19,6 @@
 
 #include "base/format_number.h"
 #include "base/random.h"
-#include "engine/simd_program.h"
 #include "full_counts.h"
 #include "lut/half_value.h"
 #include "measure/sample_set.h"

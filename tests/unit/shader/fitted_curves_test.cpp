@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/shader.h"
+
+#include <gtest/gtest.h>
+
+#include "tonewright/error.h"
+#include "tonewright/registry.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+ShaderRequest request_of(const std::string& op, const std::string& look = "",
+                         const std::string& display = "linear",
+                         ShaderLanguage language = ShaderLanguage::glsl) {
+    ShaderRequest request;
+    request.view = make_view(resolve_operator(op, {}, look), "lin_rec709", 0, display);
+    request.language = language;
+    return request;
+}
+
+// Curves in front of an argument and behind it, and one that reads it.
+TEST(Shader, FittedCurvesLeaveArgumentsAlone) {
+    ShaderRequest request = request_of("uchimura", "", "srgb");
+    request.curves = ShaderCurves::fitted;
+    for (const std::vector<std::string>& uniforms :
+         {std::vector<std::string>{"exposure"}, {"max_brightness"}, {"exposure", "contrast"}}) {
+        request.uniforms = uniforms;
+        // An error of the polynomials is at most 3 units of 2^-24.
+        EXPECT_LE(measure_shader(request).in_float, 4e-7) << uniforms.back();
+    }
+    const ShaderErrors unmeasured;
+    const std::string text = write_shader(request, &unmeasured).text;
+    EXPECT_NE(text.find("exp2(exposure)"), std::string::npos);
+}
+
+}  // namespace
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/shader.h"
+
+#include <gtest/gtest.h>
+
+#include "full_counts.h"
+#include "tonewright/error.h"
+#include "tonewright/registry.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+ShaderRequest request_of(const std::string& op, const std::string& look = "",
+                         const std::string& display = "linear",
+                         ShaderLanguage language = ShaderLanguage::glsl) {
+    ShaderRequest request;
+    request.view = make_view(resolve_operator(op, {}, look), "lin_rec709", 0, display);
+    request.language = language;
+    return request;
+}
+
+// What three channels have in common is a function; its formula stands there once.
+TEST(Shader, ACurveOfEachChannelIsWrittenOnce) {
+    const ShaderErrors unmeasured;
+    const std::string text = write_shader(request_of("agx_blender:formula"), &unmeasured).text;
+    const auto count_of = [&](const std::string& words) {
+        int count = 0;
+        for (std::size_t at = text.find(words); at != std::string::npos;
+             at = text.find(words, at + 1))
+            ++count;
+        return count;
+    };
+    EXPECT_EQ(count_of("log2("), 1);
+    EXPECT_EQ(count_of("_mix_curve("), 4);  // and three calls
+}
+
+}  // namespace
+TONEWRIGHT_NAMESPACE_END

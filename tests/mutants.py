@@ -245,7 +245,7 @@ TARGETS = {"python_check.eval": "tonewright-cli", "bench.instructions": "tonewri
 # Files with the unit tests of a folder.
 UNITS = {
     "operators": ["operators/*", "engine/operators_csv*", "pipeline/*"],
-    "color": ["color/*", "engine/operators_csv*", "pipeline/*", "lut/lut_test*"],
+    "color": ["color/*", "engine/operators_csv*", "pipeline/*", "lut/sample_test*"],
     "engine": ["engine/*"],
     "ocio": ["ocio/*"],
     "lut": ["lut/*"],

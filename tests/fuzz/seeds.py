@@ -82,8 +82,8 @@ for name, dxgi, texels in (("rgb9e5", 67, shared_exponent(nodes(2))[0]),
     (folder_of("lut") / f"{name}.dds").write_bytes(bytes([len(FORMATS) + 2]) + volume)
 
 UNIT = TESTS / "unit" / "formula"
-write_texts("formula", strings_of(UNIT / "formula_test.cpp"))
-write_texts("glsl", [text for text in strings_of(UNIT / "glsl_test.cpp") if "(" in text])
+write_texts("formula", [text for name in ("parse", "print") for text in strings_of(UNIT / f"{name}_test.cpp")])
+write_texts("glsl", [text for source in sorted(UNIT.glob("glsl*_test.cpp")) for text in strings_of(source) if "(" in text])
 for path in (TESTS / "data" / "glsl").iterdir():
     shutil.copy(path, folder_of("glsl"))
 write_texts("definition", [text for source in (TESTS / "unit" / "definition").glob("*.cpp") for text in strings_of(source)

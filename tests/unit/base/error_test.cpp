@@ -151,5 +151,18 @@ TEST(Error, OfAnotherLibraryIsAboutMemoryByItsWords) {
     EXPECT_EQ(problem_of_library("it is broken\nas said").value, "it is broken");
 }
 
+TEST(Problem, UnrenderedKeepsItsReferences) {
+    const Problem problem = {.parameter = "max_error",
+                             .value = "0",
+                             .expected = "above 0 (<<size=65>>)",
+                             .suggestion = "1"};
+    EXPECT_EQ(unrendered(problem),
+              "max error is 0; expected above 0 (<<size=65>>); did you mean 1?");
+    EXPECT_EQ(unrendered({.what = "a.tone", .value = "is empty"}), "a.tone: is empty");
+    EXPECT_EQ(unrendered({}), "");
+    // Two steps are one: references of an inner message are written once, by the outer one.
+    EXPECT_EQ(render(unrendered(problem)), render(problem));
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

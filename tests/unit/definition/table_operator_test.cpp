@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -141,6 +142,18 @@ TEST(LutOperator, TextsNameFiles) {
     EXPECT_EQ(
         resolve_operator("stated.cube:output=linear", {}, {}, OperatorSet(small_table)).output(),
         OutputKind::display_linear);
+}
+
+TEST(LutOperator, ExtensionsHaveTheDotAndNameLuts) {
+    const std::vector<std::string>& all = table_extensions();
+    for (const char* extension : {".cube", ".clf", ".icc", ".png"})
+        EXPECT_EQ(std::count(all.begin(), all.end(), extension), 1) << extension;
+    EXPECT_EQ(std::count(all.begin(), all.end(), ".tone"), 0);
+    for (const std::string& extension : all) {
+        EXPECT_EQ(extension[0], '.');
+        EXPECT_TRUE(names_a_lut("a b" + extension)) << extension;
+        EXPECT_TRUE(names_a_lut("a" + extension + ":input=srgb")) << extension;
+    }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -163,6 +164,33 @@ TEST(Expr, LookupRefusesPositionsThatAreNone) {
     EXPECT_THROW((void)lookup(of({std::numeric_limits<double>::quiet_NaN(), 0.5, 1}), kX), Error);
     EXPECT_EQ(to_string(lookup(of({}), kX)), "lookup[3](x)");
     EXPECT_EQ(to_string(lookup(of({0, 0.25, 1}), kX)), "lookup[3 uneven](x)");
+}
+
+TEST(Expr, MakeExprFoldsAsTheFunctionsDo) {
+    const Expr x = Expr::input(0);
+    EXPECT_TRUE(same(make_expr(ExprOp::add, std::array{x, Expr(2)}), x + 2));
+    EXPECT_TRUE(same(make_expr(ExprOp::multiply, std::array{x, Expr(1)}), x)) << "neutral";
+    EXPECT_EQ(make_expr(ExprOp::divide, std::array{Expr(1), Expr(4)}).value(), 0.25) << "constants";
+    EXPECT_TRUE(same(make_expr(ExprOp::select, std::array{less(x, 1), x, Expr(1)}),
+                     select(less(x, 1), x, 1)));
+}
+
+TEST(Expr, MixIsTheStraightLineBetweenTwo) {
+    const Expr t = Expr::input(0);
+    for (const double at : {-1.0, 0.0, 0.25, 1.0, 2.0})
+        EXPECT_EQ(evaluate(mix(2, 10, t), at), 2 + 8 * at)
+            << "exact in double, also beyond the ends";
+}
+
+TEST(Expr, DependsOnTheInputsThatItReads) {
+    const Expr x = Expr::input(0);
+    const Expr z = Expr::input(2);
+    const Expr f = select(less(x, 1), z, 4);
+    EXPECT_TRUE(depends_on(f, 0)) << "a condition counts";
+    EXPECT_FALSE(depends_on(f, 1));
+    EXPECT_TRUE(depends_on(f, 2));
+    EXPECT_FALSE(depends_on(0 * x, 0)) << "folded";
+    EXPECT_FALSE(depends_on(Expr::uniform("u"), 0));
 }
 
 }  // namespace

@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
@@ -147,6 +150,57 @@ TEST(PixelType, Names) {
             "pixel type is flaot; expected uint8, uint16, half or float; did you mean float?");
     }
     EXPECT_THROW((void)parse_pixel_type(""), Error);
+}
+
+TEST(WriteOptions, AlphaIsReadFromItsText) {
+    using Alpha = WriteOptions::Alpha;
+    WriteOptions options;
+    for (const auto& [text, alpha] : std::vector<std::pair<const char*, Alpha>>{
+             {"ignore", Alpha::ignore}, {"opaque", Alpha::opaque}, {"keep", Alpha::keep}}) {
+        set_alpha(options, text);
+        EXPECT_EQ(options.alpha, alpha) << text;
+    }
+    set_alpha(options, "over:0,0.5,1");
+    EXPECT_EQ(options.alpha, Alpha::over);
+    EXPECT_EQ(options.background, (std::array<float, 3>{0, 0.5F, 1}));
+    for (const char* text : {"", "overlay", "over", "over:", "over:1", "over:1,1", "over:1,1,1,1",
+                             "over:1,1,2", "over:-0.1,0,0", "over:nan,0,0", "over:0,0,0x"})
+        EXPECT_THROW(set_alpha(options, text), Error) << text;
+}
+
+TEST(WriteOptions, PixelTypeHasTheBitsOfDpx) {
+    WriteOptions options;
+    set_pixel_type(options, "uint10");
+    EXPECT_EQ(options.bits, 10);
+    EXPECT_EQ(options.type, OIIO::TypeDesc(OIIO::TypeDesc::UINT16));
+    set_pixel_type(options, "half");
+    EXPECT_EQ(options.bits, 0) << "those of before are gone";
+    EXPECT_EQ(options.type, OIIO::TypeDesc(OIIO::TypeDesc::HALF));
+    EXPECT_THROW(set_pixel_type(options, "uint14"), Error);
+}
+
+TEST(AssociatedAlpha, MultipliesColorThatIsNot) {
+    OIIO::ImageSpec spec(2, 1, 4, OIIO::TypeDesc::FLOAT);
+    const float pixels[] = {0.8F, 0.4F, 2.0F, 0.5F, 0.3F, 0.2F, 0.1F, 0.0F};
+    const auto picture = [&](bool is_unassociated) {
+        OIIO::ImageSpec own = spec;
+        if (is_unassociated) own.attribute("oiio:UnassociatedAlpha", 1);
+        OIIO::ImageBuf buffer(own);
+        EXPECT_TRUE(buffer.set_pixels(buffer.roi(), OIIO::TypeDesc::FLOAT, pixels));
+        return buffer;
+    };
+    const OIIO::ImageBuf same = with_associated_alpha(picture(false));
+    const OIIO::ImageBuf multiplied = with_associated_alpha(picture(true));
+    EXPECT_EQ(multiplied.spec().get_int_attribute("oiio:UnassociatedAlpha", 0), 0);
+    for (int x = 0; x < 2; ++x) {
+        const float alpha = pixels[4 * x + 3];
+        for (int c = 0; c < 4; ++c) {
+            const float value = pixels[4 * x + c];
+            EXPECT_EQ(same.getchannel(x, 0, 0, c), value);
+            EXPECT_EQ(multiplied.getchannel(x, 0, 0, c), c == 3 ? value : value * alpha)
+                << "alpha 0 makes black";
+        }
+    }
 }
 
 }  // namespace

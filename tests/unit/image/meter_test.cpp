@@ -592,5 +592,35 @@ TEST(Meter, ErrorsNameTheOption) {
     EXPECT_THROW((void)parse_meter_method("log-averag"), Error);
 }
 
+TEST(ExposureRule, IntervalsAreClosed) {
+    EXPECT_NO_THROW(check_exposure_rule({}));
+    EXPECT_NO_THROW(
+        check_exposure_rule({.key = 1e-3, .min_stops = -40, .max_stops = 40, .compensation = 20}));
+    EXPECT_NO_THROW(
+        check_exposure_rule({.key = 16, .min_stops = 2, .max_stops = 2, .compensation = -20}));
+    const double nan = std::nan("");
+    for (const ExposureRule& rule : std::vector<ExposureRule>{{.key = 9e-4},
+                                                              {.key = 16.1},
+                                                              {.key = nan},
+                                                              {.min_stops = -41},
+                                                              {.max_stops = 41},
+                                                              {.min_stops = 1, .max_stops = 0},
+                                                              {.compensation = 20.1},
+                                                              {.compensation = nan}})
+        EXPECT_THROW(check_exposure_rule(rule), Error);
+}
+
+TEST(Adaptation, IntervalsAreClosed) {
+    EXPECT_NO_THROW(check_adaptation({}));
+    EXPECT_NO_THROW(check_adaptation({.up = 0, .down = 1000, .fps = 0.01, .start = -40}));
+    for (const Adaptation& adaptation : std::vector<Adaptation>{{.up = -1},
+                                                                {.down = 1001},
+                                                                {.fps = 0},
+                                                                {.fps = std::nan("")},
+                                                                {.start = 41},
+                                                                {.start = kInfinity}})
+        EXPECT_THROW(check_adaptation(adaptation), Error);
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

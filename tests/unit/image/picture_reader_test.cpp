@@ -155,7 +155,7 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-class ImageFile : public testing::Test {
+class ReadPicture : public testing::Test {
   protected:
     void SetUp() override {
         folder_ =
@@ -211,7 +211,7 @@ void expect_file_error(const std::string& message, const std::string& path,
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
-TEST_F(ImageFile, TruncatedFilesAreErrors) {
+TEST_F(ReadPicture, TruncatedFilesAreErrors) {
     // ImageBuf::read() finds nothing wrong with a truncated TIFF or JPEG file.
     const ImageBuf picture = make_picture();
     for (const char* name :
@@ -231,7 +231,7 @@ TEST_F(ImageFile, TruncatedFilesAreErrors) {
     }
 }
 
-TEST_F(ImageFile, RefusesFilesThatAreNotPictures) {
+TEST_F(ReadPicture, RefusesFilesThatAreNotPictures) {
     const auto read = [&](const std::string& path) {
         return message_of([&] { (void)read_image(path); });
     };
@@ -245,7 +245,7 @@ TEST_F(ImageFile, RefusesFilesThatAreNotPictures) {
     expect_file_error(read(file("text.txt")), file("text.txt"), "");
 }
 
-TEST_F(ImageFile, DeepPicturesAreRefused) {
+TEST_F(ReadPicture, DeepPicturesAreRefused) {
     ImageSpec spec(2, 2, 5, TypeDesc::FLOAT);
     spec.channelnames = {"R", "G", "B", "A", "Z"};
     spec.deep = true;
@@ -257,7 +257,7 @@ TEST_F(ImageFile, DeepPicturesAreRefused) {
                       file("a.exr"), "deep");
 }
 
-TEST_F(ImageFile, ReadsAChangedFileAgain) {
+TEST_F(ReadPicture, ReadsAChangedFileAgain) {
     ImageBuf picture(ImageSpec(4, 4, 3, TypeDesc::FLOAT));
     for (const float value : {0.25F, 0.75F}) {
         OIIO::ImageBufAlgo::fill(picture, {value, value, value});

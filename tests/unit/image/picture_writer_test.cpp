@@ -182,7 +182,7 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-class ImageFile : public testing::Test {
+class WrittenPicture : public testing::Test {
   protected:
     void SetUp() override {
         folder_ =
@@ -238,7 +238,7 @@ void expect_file_error(const std::string& message, const std::string& path,
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
-TEST_F(ImageFile, TypeOfTheFormatOrTheRequestedOne) {
+TEST_F(WrittenPicture, TypeOfTheFormatOrTheRequestedOne) {
     const ImageBuf picture = make_picture();
     write_image_atomically(picture, file("a.png"));
     EXPECT_EQ(read_image(file("a.png")).spec().format, TypeDesc::UINT8);
@@ -257,7 +257,7 @@ TEST_F(ImageFile, TypeOfTheFormatOrTheRequestedOne) {
     EXPECT_EQ(read_image(file("a.tif")).spec().get_int_attribute("oiio:BitsPerSample", 16), 16);
 }
 
-TEST_F(ImageFile, FormatsWithoutProxies) {
+TEST_F(WrittenPicture, FormatsWithoutProxies) {
     // SGI cannot be written to memory by OIIO 2.4: the other way through the code.
     const ImageBuf picture = make_picture(3, TypeDesc::UINT8);
     write_image_atomically(picture, file("a.sgi"));
@@ -265,7 +265,7 @@ TEST_F(ImageFile, FormatsWithoutProxies) {
     EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(ImageFile, PicturesWithMetadata) {
+TEST_F(WrittenPicture, PicturesWithMetadata) {
     // As tonemap() leaves them, and as cameras do: writers make more blocks of a file then.
     ImageBuf picture(ImageSpec(16, 12, 3, TypeDesc::FLOAT));
     OIIO::ImageBufAlgo::fill(picture, {0.2F, 0.4F, 0.6F});
@@ -281,7 +281,7 @@ TEST_F(ImageFile, PicturesWithMetadata) {
     }
 }
 
-TEST_F(ImageFile, ChannelsThatAFormatCannotHoldAreLeftOut) {
+TEST_F(WrittenPicture, ChannelsThatAFormatCannotHoldAreLeftOut) {
     ImageSpec spec(8, 8, 5, TypeDesc::FLOAT);
     spec.channelnames = {"R", "G", "B", "Z", "A"};
     spec.alpha_channel = 4;
@@ -300,7 +300,7 @@ TEST_F(ImageFile, ChannelsThatAFormatCannotHoldAreLeftOut) {
     EXPECT_EQ(read_image(file("a.exr")).nchannels(), 5);
 }
 
-TEST_F(ImageFile, FormatsWithoutDisplayWindowHoldTheDisplayWindow) {
+TEST_F(WrittenPicture, FormatsWithoutDisplayWindowHoldTheDisplayWindow) {
     ImageSpec spec(10, 8, 3, TypeDesc::FLOAT);
     spec.x = -2;
     spec.y = 3;
@@ -338,7 +338,7 @@ TEST_F(ImageFile, FormatsWithoutDisplayWindowHoldTheDisplayWindow) {
     }
 }
 
-TEST_F(ImageFile, PngHasColorThatIsNotMultiplied) {
+TEST_F(WrittenPicture, PngHasColorThatIsNotMultiplied) {
     ImageSpec spec(2, 1, 4, TypeDesc::FLOAT);
     spec.attribute("oiio:ColorSpace", "Gamma2.2");
     ImageBuf picture(spec);
@@ -368,7 +368,7 @@ TEST_F(ImageFile, PngHasColorThatIsNotMultiplied) {
     EXPECT_EQ(read_image(file("a.png")).spec().format, TypeDesc::UINT16);
 }
 
-TEST_F(ImageFile, FailedWriteLeavesTheOldFile) {
+TEST_F(WrittenPicture, FailedWriteLeavesTheOldFile) {
     const ImageBuf picture = make_picture();
     std::signal(SIGXFSZ, SIG_IGN);
     for (const char* name : {"a.exr", "a.png", "a.jpg", "a.tif", "a.hdr", "a.sgi"}) {
@@ -396,7 +396,7 @@ TEST_F(ImageFile, FailedWriteLeavesTheOldFile) {
     std::signal(SIGXFSZ, SIG_DFL);
 }
 
-TEST_F(ImageFile, FailedEncodingLeavesTheOldFile) {
+TEST_F(WrittenPicture, FailedEncodingLeavesTheOldFile) {
     put(file("a.png"), "the old file");
     expect_file_error(message_of([&] { write_image_atomically(ImageBuf(), file("a.png")); }),
                       file("a.png"), "there is no picture");
@@ -404,7 +404,7 @@ TEST_F(ImageFile, FailedEncodingLeavesTheOldFile) {
     EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(ImageFile, RefusesPathsThatCannotBeWritten) {
+TEST_F(WrittenPicture, RefusesPathsThatCannotBeWritten) {
     const ImageBuf picture = make_picture();
     const auto write = [&](const std::string& path) {
         return message_of([&] { write_image_atomically(picture, path); });

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "tonewright/local.h"
 #include "tonewright/registry.h"
@@ -155,6 +157,12 @@ std::vector<std::string> ids() {
 }
 INSTANTIATE_TEST_SUITE_P(Every, Local, testing::ValuesIn(ids()),
                          [](const auto& of) { return of.param; });
+
+TEST(LocalOperators, RowsInTurnAreOnePart) {
+    std::vector<std::pair<int, int>> parts;
+    run_rows_in_turn(7, [&](int begin, int end) { parts.emplace_back(begin, end); });
+    EXPECT_EQ(parts, (std::vector<std::pair<int, int>>{{0, 7}}));
+}
 
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

@@ -76,5 +76,48 @@ TEST(LutApplications, CurvesAreTablesWhereTheApplicationConvertsPrimaries) {
     EXPECT_FALSE(is_table_for(obs, request_of(obs, "hable").view));
 }
 
+TEST(LutApplications, ChainsAreOfSceneLinearInput) {
+    int count = 0;
+    for (const LutApplication& application : all_lut_applications()) {
+        for (const LutFormat format : {LutFormat::clf, LutFormat::ctf, LutFormat::cube}) {
+            const bool is_chain = reads_chains(application, format);
+            count += is_chain;
+            EXPECT_FALSE(is_chain && format == LutFormat::cube) << application.id;
+            EXPECT_EQ(lut_encoding_of(application, format),
+                      is_chain ? "linear" : application.encoding);
+            EXPECT_EQ(&lut_steps_of(application, format),
+                      is_chain ? &application.chain_steps : &application.steps);
+            EXPECT_FALSE(lut_steps_of(application, format).empty()) << application.id;
+        }
+    }
+    EXPECT_GT(count, 0) << "else the loop says nothing";
+}
+
+TEST(LutApplications, LogsOfSceneLightTakeAnyDisplay) {
+    EXPECT_TRUE(takes_any_display(find_lut_application("resolve")))
+        << "timelines in DaVinci Intermediate";
+    for (const LutApplication& application : all_lut_applications()) {
+        if (takes_any_display(application)) {
+            EXPECT_NE(application.encoding, "srgb") << application.id;
+        }
+    }
+}
+
+TEST(LutFormatOfFile, ExtensionsDecideOrMustAgree) {
+    EXPECT_EQ(lut_format_of_file("a.cube", {}, nullptr), LutFormat::cube);
+    EXPECT_EQ(lut_format_of_file("a.clf", {}, nullptr), LutFormat::clf);
+    EXPECT_EQ(lut_format_of_file("a.cube", LutFormat::resolve_cube, nullptr),
+              LutFormat::resolve_cube)
+        << "the format wins";
+    EXPECT_THROW((void)lut_format_of_file("a.txt", {}, nullptr), Error);
+    EXPECT_THROW((void)lut_format_of_file("a.cube", LutFormat::clf, nullptr), Error);
+    for (const LutApplication& application : all_lut_applications()) {
+        EXPECT_THROW((void)lut_format_of_file("a.txt", {}, &application), Error) << application.id;
+        if (reads_chains(application, LutFormat::clf)) {
+            EXPECT_EQ(lut_format_of_file("a.clf", {}, &application), LutFormat::clf);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace tonewright

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lut/table_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
+#include "unit/lut/lut_cases.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -49,6 +52,39 @@ TEST(TableFile, RangesBecomeZeroToOne) {
     EXPECT_TRUE(stages.empty());
     add_range(stages, {-1, 0, 0}, {1, 1, 4});
     EXPECT_EQ(ReferenceEngine(stages)({0, 0.25, 1}), (Vector3{0.5, 0.25, 0.25}));
+}
+
+TEST(TableReader, ReadsACubeAsItsNodes) {
+    const Folder folder;
+    // Red fastest: the node at (1, 0, 0) has the value (0.5, 0, 0), so red is halved.
+    std::string text = "LUT_3D_SIZE 2\n";
+    for (int i = 0; i < 8; ++i)
+        text += fmt::format("{} {} {}\n", 0.5 * (i & 1), (i >> 1) & 1, i >> 2);
+    write(folder / "a.cube", text);
+    const TableReader reader = table_reader();
+    const auto shown = [&] {
+        return evaluate(compose(reader(folder / "a.cube").stages)[0], std::array{0.5, 0.25, 1.0});
+    };
+    EXPECT_DOUBLE_EQ(shown(), 0.25);
+    EXPECT_NE(reader(folder / "a.cube").description.find("3D LUT"), std::string::npos);
+    // A changed file is read again.
+    write(folder / "a.cube", "LUT_1D_SIZE 2\n0 0 0\n0.125 1 1\n");
+    EXPECT_DOUBLE_EQ(shown(), 0.0625);
+    EXPECT_THROW((void)reader(folder / "none.cube"), FileError);
+}
+
+TEST(TableReader, PassesOtherFilesOn) {
+    std::vector<std::string> asked;
+    const TableReader reader = table_reader([&](const std::string& path) {
+        asked.push_back(path);
+        TableFile table;
+        table.description = "of the next reader";
+        return table;
+    });
+    const Folder folder;
+    write(folder / "a.spi1d", "Version 1\n");
+    EXPECT_EQ(reader(folder / "a.spi1d").description, "of the next reader");
+    EXPECT_EQ(asked, std::vector<std::string>{folder / "a.spi1d"});
 }
 
 }  // namespace

@@ -235,5 +235,19 @@ TEST(WriteLut, Spi3dNamesItsNodes) {
     EXPECT_EQ(nodes.size(), 17U * 17 * 17);
 }
 
+TEST(LutFormatName, KindsOfFormats) {
+    const std::set<LutFormat> pictures = {LutFormat::hald, LutFormat::strip, LutFormat::strip_up};
+    for (const std::string& name : lut_format_names()) {
+        const LutFormat format = parse_lut_format(name);
+        EXPECT_EQ(is_picture_format(format), pictures.count(format) == 1) << name;
+        EXPECT_EQ(is_strip(format), format == LutFormat::strip || format == LutFormat::strip_up)
+            << name;
+    }
+    for (const char* path : {"a.png", "a.PNG", "a.b.tif", "lut.exr"})
+        EXPECT_TRUE(is_lut_picture(path)) << path;
+    for (const char* path : {"a.cube", "png", "a.png.cube", "", "a.icc"})
+        EXPECT_FALSE(is_lut_picture(path)) << path;
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

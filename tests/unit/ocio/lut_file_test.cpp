@@ -7,6 +7,7 @@
 #include <OpenColorIO/OpenColorIO.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>  // mkdtemp(), setenv()
+#include <utility>
 
 #include <array>
 #include <filesystem>
@@ -141,6 +142,34 @@ TEST_F(LutFileBesideOcio, ThreadsReadAtTheSameTime) {
             EXPECT_EQ(found[i], 10 + static_cast<int>(i % 8) % 3);
     }
     EXPECT_TRUE(leaves_nothing());
+}
+
+TEST_F(LutFileBesideOcio, InterpolationsHaveNames) {
+    EXPECT_EQ(parse_lut_interpolation("auto"), LutInterpolation::automatic);
+    EXPECT_EQ(parse_lut_interpolation("tetrahedral"), LutInterpolation::tetrahedral);
+    EXPECT_EQ(parse_lut_interpolation("trilinear"), LutInterpolation::trilinear);
+    EXPECT_THROW((void)parse_lut_interpolation("nearest"), Error);
+    // Along an edge that is no edge of the six tetrahedra, the two differ: the middle of a cube
+    // whose only lit node is (1, 1, 0) is 0.25 of it in a plane of red and green, trilinearly, and
+    // 0.5 on the diagonal between.
+    std::string text = "LUT_3D_SIZE 2\n";
+    for (int i = 0; i < 8; ++i)
+        text += i == 3 ? "1 1 1\n" : "0 0 0\n";
+    const std::string path = write("a.cube", text);
+    const std::array<float, 3> in = {0.5F, 0.5F, 0};
+    for (const auto& [interpolation, expected] : {std::pair(LutInterpolation::trilinear, 0.25F),
+                                                  std::pair(LutInterpolation::tetrahedral, 0.5F)}) {
+        std::array<float, 3> out{};
+        LutFile(path, interpolation).run_rgb(in.data(), out.data(), 1);
+        EXPECT_NEAR(out[0], expected, 1e-6F) << "a few roundings of float";
+    }
+}
+
+TEST_F(LutFileBesideOcio, SilencedOcioWritesNoLog) {
+    const OCIO::LoggingLevel level = OCIO::GetLoggingLevel();
+    silence_opencolorio();
+    EXPECT_EQ(OCIO::GetLoggingLevel(), OCIO::LOGGING_LEVEL_NONE);
+    OCIO::SetLoggingLevel(level);
 }
 
 }  // namespace

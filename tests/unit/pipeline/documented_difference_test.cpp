@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
@@ -26,6 +28,16 @@ TEST(DocumentedDifferences, SayWhatTheUserSees) {
     EXPECT_EQ(text(Kind::jumps, 0.00104), "jumps by 0.001 from one gray to the next");
     EXPECT_EQ(text(Kind::exceeds_white, 10, "hdr"),
               "hdr: exceeds white, up to 10; SDR displays clip it");
+}
+
+TEST(DocumentedDifferences, EveryKindHasAName) {
+    using Kind = DocumentedDifference::Kind;
+    const std::vector<std::string>& names = difference_names();
+    ASSERT_EQ(names.size(), static_cast<std::size_t>(Kind::jumps) + 1);
+    EXPECT_EQ(names[static_cast<std::size_t>(Kind::black)], "black");
+    EXPECT_EQ(names[static_cast<std::size_t>(Kind::exceeds_white)], "exceeds_white");
+    EXPECT_EQ(names[static_cast<std::size_t>(Kind::jumps)], "jumps");
+    EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
 }
 
 }  // namespace

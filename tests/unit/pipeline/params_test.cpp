@@ -288,5 +288,48 @@ TEST(Statistics, OfEveryPictureAreAccepted) {
     }
 }
 
+TEST(Parameter, FixedOnesAreNotLive) {
+    const auto specs = fixed_parameters({number_parameter("a", "", 1, 0, 2, "A number."),
+                                         choice_parameter("b", {"x", "y"}, "x", "A choice.")});
+    ASSERT_EQ(specs.size(), 2U);
+    for (const ParameterSpec& spec : specs)
+        EXPECT_FALSE(spec.is_live) << spec.name;
+    EXPECT_TRUE(number_parameter("a", "", 1, 0, 2, "A number.").is_live) << "else";
+}
+
+TEST(Parameter, DisplaysReplaceTheDefaultAlone) {
+    Operator op;
+    op.id = "peaked";
+    op.parameters = {display_parameter(
+        number_parameter("peak", "cd/m2", 100, 100, 4000, "Peak."), [](const DisplayFacts& d) {
+            return d.is_hdr ? std::to_string(static_cast<int>(d.peak)) : std::string();
+        })};
+    op.build = [](const Params& p) -> Pipeline {
+        return {curve_stage(Expr::input(0) / p.number("peak"))};
+    };
+    const auto peak = [&](const Settings& settings, const DisplayFacts& display) {
+        return resolve_for_display(resolve(op, nullptr, settings, ""), display)
+            .params.number("peak");
+    };
+    EXPECT_EQ(peak({}, {kRec2020, true, 1000}), 1000);
+    EXPECT_EQ(peak({}, {kRec709, false, 100}), 100) << "an empty text: the default";
+    EXPECT_EQ(peak({{"peak", "300"}}, {kRec2020, true, 1000}), 300) << "the user wins";
+}
+
+TEST(Resolve, FindPresetIgnoresCaseAndNamesTheNearest) {
+    const Operator& op = find_operator("reinhard_extended");
+    EXPECT_EQ(find_preset(op, "LUMINANCE").id, "luminance");
+    for (const Preset& preset : op.presets)
+        EXPECT_EQ(&find_preset(op, preset.id), &preset);
+    EXPECT_EQ(error_of([&] {
+                  (void)find_preset(op, op.presets[0].id + "x");
+              }).find("reinhard_extended: preset is " + op.presets[0].id + "x; expected"),
+              0U);
+    // The look of an operator is no preset, and the message says so.
+    const std::string error =
+        error_of([] { (void)find_preset(find_operator("agx_blender"), "punchy"); });
+    EXPECT_NE(error.find("did you mean look=punchy?"), std::string::npos) << error;
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

@@ -294,5 +294,19 @@ TEST(Pipeline, PrintsOneStageALine) {
               "cross-talk: g | b | r\n");
 }
 
+TEST(Stage, ApplyComposesWithAnyExpressions) {
+    // What a pipeline of one stage composes, of other expressions than the inputs.
+    for (const Stage& stage : std::vector<Stage>{MatrixStage{{{{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}}},
+                                                 curve_stage(kX / (kX + 1)), ClampStage{-1, 2},
+                                                 CrossTalkStage{{max(kR, kG), kB, kR - kB}},
+                                                 HuePreservingStage{kX * kX}}) {
+        const std::array<Expr, 3> swapped = {kB, kR, kG};
+        const std::array<Expr, 3> applied = apply_stage(stage, swapped);
+        const std::array<Expr, 3> composed = compose({stage});
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_TRUE(same(applied[c], substitute(composed[c], swapped))) << stage_kind(stage);
+    }
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

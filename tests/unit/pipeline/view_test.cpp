@@ -307,5 +307,24 @@ TEST(View, KeepsGraysWithinHalfACodeOfTenBits) {
     EXPECT_FALSE(keeps_grays({CurveStage{{kX, kX, select(less(kX, 4e-6), 1, kX)}, std::nullopt}}));
 }
 
+TEST(View, ExposuresAreFiniteAndWithin64Stops) {
+    for (const double stops : {-64.0, -0.0, 64.0})
+        EXPECT_NO_THROW(check_exposure(stops)) << stops;
+    for (const double stops : {-64.1, 64.1, kInfinity, -kInfinity, std::nan("")})
+        EXPECT_THROW(check_exposure(stops), Error) << stops;
+}
+
+TEST(View, SceneScaleDividesAbsoluteLightByTheReferenceWhite) {
+    SourceColor source;
+    EXPECT_EQ(scene_scale(source, 203), 1) << "relative light";
+    source.scale = 0.5;
+    EXPECT_EQ(scene_scale(source, 203), 0.5);
+    source.is_absolute = true;
+    // 1.0 is 100 cd/m2; white at 50 cd/m2 makes it 2.
+    EXPECT_EQ(scene_scale(source, 100), 0.5);
+    EXPECT_EQ(scene_scale(source, 50), 1);
+    EXPECT_DOUBLE_EQ(scene_scale(source, 203), 50.0 / 203);
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

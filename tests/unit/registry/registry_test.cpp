@@ -334,5 +334,21 @@ TEST(Registry, DialectsAreAtLeastTwo) {
         EXPECT_GE(n, 2) << name;
 }
 
+TEST(Registry, PictureOperatorsIncludeLocalOnes) {
+    ASSERT_FALSE(local_operators().empty());
+    for (const Operator& op : local_operators()) {
+        EXPECT_EQ(&find_picture_operator(op.id), &op);
+        EXPECT_THROW((void)find_operator(op.id), Error) << op.id;
+    }
+    for (const Operator& op : all_operators()) {
+        EXPECT_EQ(&find_picture_operator(op.id), &op);
+        EXPECT_EQ(&find_operator(op.view), &op) << "the name of its view";
+    }
+    EXPECT_NE(error_of([] {
+                  (void)find_picture_operator("reinhard_locall");
+              }).find("did you mean reinhard_local?"),
+              std::string::npos);
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shader/wrapper.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tonewright/error.h"
+#include "tonewright/registry.h"
+#include "tonewright/shader.h"
+#include "tonewright/view.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+Shader shader_of(const ShaderApplication& application) {
+    ShaderRequest request;
+    request.view = make_view(resolve_operator("hable"), "lin_rec709", 0, application.display);
+    request.language = application.language;
+    const ShaderErrors errors;
+    return write_shader(request, &errors);
+}
+
+TEST(ShaderApplications, AreFoundByAnySpelling) {
+    std::set<std::string> ids;
+    for (const ShaderApplication& application : shader_applications()) {
+        EXPECT_TRUE(ids.insert(application.id).second) << application.id;
+        EXPECT_EQ(&find_shader_application(application.id), &application);
+        std::string other = application.id;
+        std::replace(other.begin(), other.end(), '-', '_');
+        std::transform(other.begin(), other.end(), other.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        EXPECT_EQ(&find_shader_application(other), &application) << other;
+        EXPECT_EQ(application.steps.find('\n'), std::string::npos);
+        EXPECT_TRUE(application.display == kLinearOutput ||
+                    find_display(application.display).id == application.display);
+    }
+    EXPECT_THROW((void)find_shader_application("threejss"), Error);
+}
+
+TEST(Wrapper, HoldsTheFunctionAndEveryArgumentAndNoMarks) {
+    const std::vector<ShaderArgument> arguments = {{"my_dial", "How much of it.", 0.75, 0.125, 8}};
+    for (const ShaderApplication& application : shader_applications()) {
+        const Shader shader = shader_of(application);
+        const std::string without = wrap(application, shader, {});
+        const std::string with = wrap(application, shader, arguments);
+        for (const std::string& text : {without, with}) {
+            EXPECT_NE(text.find(shader.function), std::string::npos) << application.id;
+            for (const char* mark : {"@function", "@call", "@arguments", "@declarations", "@[",
+                                     "@]", "@header", "@name", "@value"})
+                EXPECT_EQ(text.find(mark), std::string::npos) << application.id << " " << mark;
+        }
+        EXPECT_EQ(without.find("my_dial"), std::string::npos) << application.id;
+        EXPECT_NE(with.find("my_dial"), std::string::npos) << application.id;
+        EXPECT_NE(with.find("0.75"), std::string::npos) << application.id;
+    }
+}
+
+}  // namespace
+TONEWRIGHT_NAMESPACE_END

@@ -1,31 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page's bundle, built again from npm packages; accessibility by axe-core; first paint, a 4K picture, and flipping.
 
-    python3 tests/report/test_bundle.py build/release/bin/tonewright
+    python3 -m pytest tests/report/test_bundle.py --tonewright build/release/bin/tonewright
 
 src/report/viewer.html must be what src/report/web/build.mjs makes of the locked packages. axe-core, one of them, finds no
-violation in any view, on a desktop and on a phone. The last line is `N passed, M failed`.
+violation in any view, on a desktop and on a phone.
 """
 import json
-import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
-TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS / "parity" / "clients"), str(TESTS / "shader")]
-from chromium import Page  # noqa: E402
-from executed import skip  # noqa: E402
-from pictures import Report  # noqa: E402
+import pytest
+from chromium import Page
+from executed import skip
 
-REPORT = TESTS.parent / "src" / "report"
+REPORT = Path(__file__).resolve().parents[2] / "src" / "report"
 
 
-def install(folder):
+@pytest.fixture(scope="module")
+def web(tmp_path_factory):
     """The sources of the page with their packages, in a folder of their own."""
+    folder = tmp_path_factory.mktemp("web")
     for program, package in (("node", "nodejs"), ("npm", "npm")):
         if not shutil.which(program):
             skip(f"{program} is missing (Debian: {package})")
@@ -38,13 +36,28 @@ def install(folder):
     return web
 
 
-def check_bundle(report, web):
+@pytest.fixture(scope="module")
+def file(command, web, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "page.html"
+    subprocess.run([command, "report", "-o", path, "--operators", "agx_blender,agx_threejs,aces_20,hable,khronos_neutral"], check=True)
+    return path
+
+
+@pytest.fixture(scope="module")
+def page(file):
+    """One browser for all tests: the last one looks at all that it has said."""
+    with Page() as browser:
+        yield browser
+
+
+def test_bundle(report, web):
     subprocess.run(["node", "build.mjs", "viewer.html"], cwd=web, check=True)
     is_same = (web / "viewer.html").read_bytes() == (REPORT / "viewer.html").read_bytes()
     report.check("src/report/viewer.html is the bundle of src/report/web", is_same, "run `npm ci && npm run build` in src/report/web")
 
 
-def check_axe(report, page, file, axe):
+def test_axe(report, page, file, web):
+    axe = (web / "node_modules" / "axe-core" / "axe.min.js").read_text() + "; undefined"
     for width, height, name in ((1440, 900, "desktop"), (390, 844, "phone"), (720, 450, "200 %")):
         page.resize(width, height, 2 if width < 1000 else 1, width < 500)
         for view in ("tab=picture&mode=grid", "tab=curves", "tab=parity", "tab=dialects"):
@@ -61,7 +74,7 @@ def check_axe(report, page, file, axe):
         report.check(f"{name}: no scrolling sideways", wide <= 0, f"{wide} pixels")
 
 
-def check_speed(report, command, page, file, scratch):
+def test_speed(report, command, page, file, scratch):
     """Bounds are three times what two busy cores take with software rendering, so that only a real regression fails."""
     page.resize(1920, 1080)
     page.open(file)
@@ -122,7 +135,7 @@ def check_flips(report, page):
     report.check(f"flipping, drawn ahead: {worst:.0f} ms at most (bound {bound:.0f})", worst < bound)
 
 
-def check_gallery(report, command, page, scratch):
+def test_gallery(report, command, page, scratch):
     """The pictures of `./run gallery`: OpenImageIO reads them, and the page shows each."""
     subprocess.run([sys.executable, REPORT / "gallery_pictures.py", scratch / "gallery"], check=True)
     pictures = sorted((scratch / "gallery").iterdir())
@@ -136,24 +149,5 @@ def check_gallery(report, command, page, scratch):
                      and low < 0.01 and high > 2, page.run("document.getElementById('message').textContent"))
 
 
-def main() -> int:
-    command = str(Path(sys.argv[1]).resolve())
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        scratch = Path(name)
-        web = install(scratch)
-        check_bundle(report, web)
-        file = scratch / "page.html"
-        subprocess.run([command, "report", "-o", file, "--operators", "agx_blender,agx_threejs,aces_20,hable,khronos_neutral"], check=True)
-        with Page() as page:
-            axe = (web / "node_modules" / "axe-core" / "axe.min.js").read_text() + "; undefined"
-            check_axe(report, page, file, axe)
-            check_speed(report, command, page, file, scratch)
-            check_gallery(report, command, page, scratch)
-            report.check("console: nothing", not page.errors, "\n".join(page.errors))
-    return report.finish()
-
-
-if __name__ == "__main__":
-    os.environ.setdefault("LC_ALL", "C.UTF-8")
-    sys.exit(main())
+def test_console(report, page):
+    report.check("console: nothing", not page.errors, "\n".join(page.errors))

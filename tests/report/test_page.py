@@ -1,40 +1,61 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of `tonewright report` in headless Chromium, opened from a file as users open it.
 
-    python3 tests/report/test_page.py build/release/bin/tonewright [--screenshots FOLDER]
+    python3 -m pytest tests/report/test_page.py --tonewright build/release/bin/tonewright [-k keyboard] [--screenshots FOLDER]
 
 The 64-bit reference of the page against `tonewright eval`, the picture against `tonewright apply`, the pixel probe, keyboard,
 links, damaged files. With TONEWRIGHT_TEST_ALL=1 all operators, else ten, and the HDR view, .tone files and more kinds of
-EXR files. The last line is `N passed, M failed`.
+EXR files.
 """
 import base64
 import json
-import os
 import re
 import struct
 import subprocess
-import sys
-import tempfile
 import time
-from pathlib import Path
 
 import numpy as np
-
-TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS / "parity" / "clients"), str(TESTS / "shader")]
-from chromium import Page  # noqa: E402
-from executed import IS_FULL, colors, pick, reference  # noqa: E402
-from pictures import Report  # noqa: E402
+import pytest
+from chromium import Page
+from executed import IS_FULL, colors, pick, reference
 
 # A lattice, tables, a table in steps, branches, a hue structure, a measuring operator, a local one.
 OPERATORS = ["agx_blender", "aces_20", "camera_response", "hable", "khronos_neutral", "gt7", "reinhard:luminance", "uchimura", "drago",
              "exposure_fusion"]
-KEEP = Path(sys.argv[3]) if sys.argv[2:3] == ["--screenshots"] else None
 MOST_BYTES = 3_000_000  # without pictures; the embedded chart is part of it here
 
 
 def tonewright_run(command, *arguments):
     return subprocess.run([command, *map(str, arguments)], check=True, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module")
+def file(command, tmp_path_factory):
+    """The page, as users open it."""
+    path = tmp_path_factory.mktemp("page") / "page.html"
+    tonewright_run(command, "report", "-o", path, "--operators", "all" if IS_FULL else ",".join(OPERATORS), "--no-parity")
+    return path
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """One for all tests: the last one looks at all that it has said."""
+    with Page() as page:
+        yield page
+
+
+@pytest.fixture
+def page(browser, file):
+    """The page, freshly opened on a screen of a desk."""
+    browser.resize(1440, 900)
+    browser.open(file)
+    return browser
+
+
+def test_contents(report, file):
+    report.check(f"size: {file.stat().st_size} bytes (bound {MOST_BYTES})", file.stat().st_size < MOST_BYTES)
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', file.read_text())[1]
+    report.check("policy: no script but these two", "unsafe" not in policy and policy.count("sha256-") == 3, policy)
 
 
 def check_reference(report, command, page):
@@ -74,6 +95,10 @@ PIXELS = """(() => {
 })()"""
 
 
+def test_reference(report, command, page):
+    check_reference(report, command, page)
+
+
 def canvas_of(page, width, height):
     """The picture, which is shown at 1:1 in the middle of the canvas; top row first."""
     w, h, data = json.loads(page.run(PIXELS))
@@ -90,13 +115,18 @@ def ppm(path):
     return np.frombuffer(pixels, np.uint8).reshape(height, width, 3).astype(int)
 
 
-def check_picture(report, command, page, scratch):
-    """A picture that is dropped, through several operators and exposures, and what `apply` writes."""
+def drop_chart(command, page, scratch, width, height):
     exr = scratch / "dropped.exr"
-    width, height = 640, 360
     tonewright_run(command, "chart", "-o", exr, "-d", "half", "--width", width, "--height", height)
     page.give_file("#open", exr)
     page.wait("tonewright.view.picture?.name === 'dropped.exr'")
+    return exr
+
+
+def test_picture(report, command, page, scratch):
+    """A picture that is dropped, through several operators and exposures, and what `apply` writes."""
+    width, height = 640, 360
+    exr = drop_chart(command, page, scratch, width, height)
     for name, exposure in (("hable", 0), ("agx_blender", 1.5), ("aces_20", -1), ("drago", 0)):
         page.run(f"""tonewright.state.slots[0].op = {json.dumps(name)};
             tonewright.change({{ exposure: {exposure}, mode: 'single', zoom: 1, x: {width / 2}, y: {height / 2} }})""")
@@ -109,7 +139,7 @@ def check_picture(report, command, page, scratch):
         report.check(f"{name} {exposure:+g}: 99 % of the numbers equal", np.mean(difference == 0) > 0.99, f"{np.mean(difference == 0)}")
 
 
-def check_small_view(report, command, page, scratch):
+def test_small_view(report, command, page, scratch):
     """A view of every fourth pixel, whose smaller pictures the first panel makes: all panels show the same."""
     exr = scratch / "small_view.exr"
     tonewright_run(command, "chart", "-o", exr, "-d", "half", "--width", 1536, "--height", 864)
@@ -124,14 +154,10 @@ def check_small_view(report, command, page, scratch):
     report.check("zoom 25 %: both panels show the same picture", len(np.unique(top)) > 50 and np.array_equal(top[:, :half], top[:, half:2 * half]))
 
 
-def check_real_pictures(report, command, page, scratch):
+def test_real_pictures(report, command, page, scratch, shared_data):
     """Photographs and a picture in XYZ, half floats in PIZ, as others wrote them."""
-    shared = os.environ.get("TONEWRIGHT_SHARED")
-    if not shared:
-        print("     real pictures: skipped, TONEWRIGHT_SHARED names no folder")
-        return
     for name in ("Desk.exr", "XYZ.exr", "t05.exr", "Tree.exr", "memorial.hdr") if IS_FULL else ("Desk.exr", "XYZ.exr"):
-        page.give_file("#open", Path(shared) / "data" / "hdr" / name)
+        page.give_file("#open", shared_data / "data" / "hdr" / name)
         page.wait(f"tonewright.view.picture?.name === {json.dumps(name)}")
         width, height = page.run("[tonewright.view.picture.width, tonewright.view.picture.height]")
         page.run("tonewright.state.slots[0].op = 'hable'; tonewright.change({ exposure: 0, mode: 'single', "
@@ -140,13 +166,14 @@ def check_real_pictures(report, command, page, scratch):
         page.wait(f"tonewright.view.canvas.height >= {height}")
         out = scratch / "applied.ppm"
         # The page shows the color as it is in the file.
-        tonewright_run(command, "apply", Path(shared) / "data" / "hdr" / name, out, "--operator", "hable", "--no-unpremult")
+        tonewright_run(command, "apply", shared_data / "data" / "hdr" / name, out, "--operator", "hable", "--no-unpremult")
         difference = np.abs(canvas_of(page, width, height) - ppm(out))
         report.check(f"{name}: picture within 1 of 255", difference.max() <= 1, f"{difference.max()} off")
     page.resize(1440, 900)
 
 
-def check_probe(report, command, page):
+def test_probe(report, command, page, scratch):
+    drop_chart(command, page, scratch, 640, 360)
     page.run("tonewright.state.slots[0].op = 'hable'; tonewright.change({ exposure: 0.5 })")
     probe = page.run("tonewright.probe(0, 400, 180)")
     want = reference(command, "hable", np.array([probe["scene"]], np.float32), "--exposure=0.5")[0]
@@ -167,7 +194,7 @@ def check_probe(report, command, page):
     report.check("probe: engine and OpenColorIO are exact", all(v <= 0.002 for k, v in worst.items() if "LUT" not in k), str(worst))
 
 
-def check_files(report, command, page, scratch):
+def test_files(request, report, command, page, scratch):
     """The .cube and the .tone file that the page saves, read by the command."""
     slot = "{ op: 'hable', values: { white: 5.5, exposure_bias: 3 } }"
     page.run("tonewright.change({ exposure: 0.5 })")
@@ -199,11 +226,11 @@ def check_files(report, command, page, scratch):
     size = page.run("[tonewright.view.canvas.width, tonewright.view.canvas.height]")
     report.check("Save PNG: the view with a caption below it", data[1:4] == b"PNG" and width == size[0] and size[1] < height < 1.3 * size[1],
                  f"{width} x {height}, {size}")
-    if KEEP:
-        png.replace(KEEP / "saved.png")
+    if folder := request.config.getoption("--screenshots"):
+        png.replace(folder / "saved.png")
 
 
-def check_keyboard(report, page):
+def test_keyboard(report, page):
     """Without a pointer: an operator, the exposure, the probe, another tab."""
     page.run("document.getElementById('operators').focus()")
     before = page.run("tonewright.state.slots[0].op")
@@ -232,7 +259,7 @@ def check_keyboard(report, page):
     report.check("keyboard: Tab reaches everything", {"exposure", "stage", "operators", "probe", "Save PNG", "Wipe"} <= stops, str(stops))
 
 
-def check_link(report, page, file):
+def test_link(report, page, file):
     page.run("""tonewright.state.slots[1].op = 'hable'; tonewright.state.slots[1].values = { white: 5 };
         tonewright.change({ tab: 'picture', mode: 'wipe', exposure: -1.25, wipe: 0.25, clipping: true })""")
     # The address follows 250 ms after the last change; on a busy machine, later.
@@ -247,7 +274,7 @@ def check_link(report, page, file):
     report.check("link: what is no value is left out", got == [0, "single", 0, "picture"], str(got))
 
 
-def check_damaged(report, command, page, scratch):
+def test_damaged(report, command, page, scratch):
     """Each file: one clear message in the page, which goes on."""
     whole = scratch / "whole.exr"
     tonewright_run(command, "chart", "-o", whole, "-d", "half", "--width", 320, "--height", 180)
@@ -279,7 +306,7 @@ def check_damaged(report, command, page, scratch):
     report.check("damaged files: the picture stays", page.run("tonewright.view.picture.name") == "chart", "")
 
 
-def check_command(report, command, scratch):
+def test_command(report, command, scratch):
     """Errors of the command: one line, the right exit code, no file."""
     file = scratch / "no.html"
     for arguments, code, words in (
@@ -297,7 +324,8 @@ def check_command(report, command, scratch):
     report.check("report: no file after an error", not file.exists())
 
 
-def check_own(report, command, page, scratch):
+@pytest.mark.full
+def test_own(report, command, page, scratch):
     """A .tone file and a LUT as operators of the page: its reference against `eval`."""
     (scratch / "own.tone").write_text('tonewright = 1\nid = "own"\n[[stage]]\ncurve = "max(x, 0)/(max(x, 0) + 1)"\n')
     tonewright_run(command, "bake", "hable", "--input", "lin_rec709", "--3d", "-o", scratch / "film.cube", "-q")
@@ -309,7 +337,8 @@ def check_own(report, command, page, scratch):
     report.check("report: operators from files", "own.tone" in named and "film.cube" in named, named)
 
 
-def check_kinds(report, command, page, scratch):
+@pytest.mark.full
+def test_kinds(report, command, page, scratch):
     """Every compression and kind of OpenEXR file, as OpenImageIO writes them."""
     plain = scratch / "none.exr"
     tonewright_run(command, "chart", "-o", scratch / "kinds.exr", "-d", "half", "--width", 320, "--height", 180)
@@ -345,7 +374,7 @@ def check_kinds(report, command, page, scratch):
         report.check(f"OpenEXR, {name}: {message}", words in message and message.startswith(f"{name}.exr: "))
 
 
-def check_not_finite(report, command, page, scratch):
+def test_not_finite(report, command, page, scratch):
     """NaN and infinities are shown as `apply` shows them: NaN as black."""
     file = scratch / "nan.hdr.exr"
     tonewright_run(command, "chart", "-o", file, "-d", "float", "--width", 320, "--height", 180)
@@ -364,7 +393,7 @@ def check_not_finite(report, command, page, scratch):
     report.check("NaN and infinities: reference and shader", error <= 1e-5, str(shown))
 
 
-def check_silence(report, page):
+def test_silence(report, page):
     report.check("console: nothing", not page.errors, "\n".join(page.errors))
     foreign = {url.split("/")[0] for url in page.requests} - {"file:", "blob:", "data:", "about:blank"}
     report.check("network: nothing", not foreign, str(foreign))
@@ -376,7 +405,8 @@ def check_silence(report, page):
     report.check("policy: the page cannot fetch", blocked in ("connect-src", "default-src"), blocked)
 
 
-def check_hdr(report, command, page, file):
+@pytest.mark.full
+def test_hdr(report, command, page, file):
     """The HDR version of operators on WebGPU if the display is HDR; otherwise one line with the reason."""
     page.open(file)
     note = "document.querySelector('.tools > .note').textContent"
@@ -437,50 +467,14 @@ def check_hdr_forms(report, command, page, file):
     report.check("HDR: an operator without it says so", "no HDR version" in page.run(note), page.run(note))
 
 
-def take_screenshots(page, file, folder):
+def test_screenshots(request, page, file):
+    """No test: with --screenshots, pictures for people to look at."""
+    folder = request.config.getoption("--screenshots")
+    if not folder:
+        return
     for width, height, scale in ((1440, 900, 1), (1920, 1080, 1), (390, 844, 2), (720, 450, 2)):
         page.resize(width, height, scale, width < 500)
         for tab in ("picture", "curves", "parity", "dialects"):
             page.open(file, f"#tab={tab}&mode=wipe")
             time.sleep(0.5)
             page.screenshot(folder / f"{tab}_{width}x{height}.png")
-
-
-def main() -> int:
-    command = str(Path(sys.argv[1]).resolve())
-    report = Report()
-    if KEEP:
-        KEEP.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name, Page() as page:
-        scratch = Path(name)
-        file = scratch / "page.html"
-        options = ["--operators", "all" if IS_FULL else ",".join(OPERATORS), "--no-parity"]
-        tonewright_run(command, "report", "-o", file, *options)
-        report.check(f"size: {file.stat().st_size} bytes (bound {MOST_BYTES})", file.stat().st_size < MOST_BYTES)
-        policy = re.search(r'Content-Security-Policy" content="([^"]*)"', file.read_text())[1]
-        report.check("policy: no script but these two", "unsafe" not in policy and policy.count("sha256-") == 3, policy)
-        check_command(report, command, scratch)
-        page.open(file)
-        check_reference(report, command, page)
-        check_picture(report, command, page, scratch)
-        check_small_view(report, command, page, scratch)
-        check_real_pictures(report, command, page, scratch)
-        check_probe(report, command, page)
-        check_files(report, command, page, scratch)
-        check_keyboard(report, page)
-        check_link(report, page, file)
-        check_damaged(report, command, page, scratch)
-        check_not_finite(report, command, page, scratch)
-        if IS_FULL:
-            check_kinds(report, command, page, scratch)
-            check_own(report, command, page, scratch)
-            check_hdr(report, command, page, file)
-        check_silence(report, page)
-        if KEEP:
-            take_screenshots(page, file, KEEP)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    os.environ.setdefault("LC_ALL", "C.UTF-8")
-    sys.exit(main())

@@ -17,6 +17,9 @@ PACKAGES = ["webgpu@0.6.2", "naga-wasm@30.1.0", "three@0.187.0", "playwright-cor
 
 
 def skip(reason: str):
+    if "PYTEST_CURRENT_TEST" in os.environ:
+        import pytest  # scripts run without it
+        pytest.skip(reason)
     print(f"skipped: {reason}")
     sys.exit(SKIPPED)
 

@@ -29,15 +29,26 @@ from lut_encodings import acescct_decode, acescct_encode  # noqa: E402, F401  (w
 class Report:
     """Prints one line per check and counts them; from any thread. Errors are compared with a bound; NaN fails."""
 
-    def __init__(self):
+    def __init__(self, whole=None):
+        """whole: the report of the run that a test belongs to, which counts its checks, too."""
         self.passed = self.failed = 0
+        self.failures, self.whole = [], whole
         self.lock = threading.Lock()
 
-    def check(self, what, ok, detail=""):
+    def count(self, ok):
         with self.lock:
             self.passed += bool(ok)
             self.failed += not ok
-            print(f"{'ok  ' if ok else 'FAIL'} {what}" + (f"\n     {detail}" if detail and not ok else ""), flush=True)
+
+    def check(self, what, ok, detail=""):
+        self.count(ok)
+        if self.whole:
+            self.whole.count(ok)
+        said = f"{'ok  ' if ok else 'FAIL'} {what}" + (f"\n     {detail}" if detail and not ok else "")
+        with self.lock:
+            if not ok:
+                self.failures.append(said)
+            print(said, flush=True)
         return bool(ok)
 
     def bound(self, what, error, bound, detail=""):
@@ -69,7 +80,10 @@ class Report:
 
 
 def skip(reason):
-    """Ends the whole script as skipped."""
+    """Ends the whole script, or the test of pytest, as skipped."""
+    if "PYTEST_CURRENT_TEST" in os.environ:
+        import pytest  # scripts run without it
+        pytest.skip(reason)
     print(f"skipped: {reason}")
     sys.exit(SKIPPED)
 

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fixtures of the Python tests.
+
+    python3 -m pytest tests/report/test_page.py -k keyboard --tonewright build/release/bin/tonewright
+
+A test asks for `report`, makes any number of checks, and fails at its end if one of them has failed. The summary counts checks as
+the scripts do: `N passed, M failed`. A test that is skipped says why in a line `skipped: REASON`, which tests/skipped.py reads. If
+all tests of a run are skipped, the exit status is 77, so that ctest shows the run as skipped.
+"""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from pictures import ALL, SKIPPED, Report
+
+PROJECT = Path(__file__).resolve().parents[1]
+
+
+def pytest_addoption(parser):
+    group = parser.getgroup("tonewright")
+    group.addoption("--tonewright", type=Path, default=PROJECT / "build/release/bin/tonewright", metavar="COMMAND",
+                    help="the command (default: build/release/bin/tonewright)")
+    group.addoption("--python-module", type=Path, metavar="FOLDER", help="folder of the Python package; without it, its tests are skipped")
+    group.addoption("--plugin", type=Path, metavar="FOLDER", help="folder of the format plugin; without it, its tests are skipped")
+    group.addoption("--site", type=Path, metavar="FOLDER", help="the documentation site; without it, its test builds one")
+    group.addoption("--screenshots", type=Path, metavar="FOLDER", help="write pictures of pages here")
+
+
+def pytest_configure(config):
+    os.environ.setdefault("LC_ALL", "C.UTF-8")
+    # Configurations of the user must change no result.
+    os.environ.pop("OCIO", None)
+    config.checks = Report()
+    if folder := config.getoption("--screenshots"):
+        folder.mkdir(parents=True, exist_ok=True)
+
+
+# --------------------------------------------------------------------------------------------------
+# Fixtures
+
+
+@pytest.fixture(scope="session")
+def command(request):
+    """The command, as an absolute path."""
+    path = request.config.getoption("--tonewright").resolve()
+    if not path.exists():
+        pytest.exit(f"--tonewright: {path} does not exist; build it with ./run build", returncode=2)
+    return path
+
+
+def folder_option(request, name):
+    folder = request.config.getoption(name)
+    if folder is None:
+        pytest.skip(f"{name} names no folder")
+    return folder.resolve()
+
+
+@pytest.fixture(scope="session")
+def python_module(request):
+    """The folder of the Python package."""
+    return folder_option(request, "--python-module")
+
+
+@pytest.fixture(scope="session")
+def plugin(request):
+    """The folder of the format plugin of OpenImageIO."""
+    return folder_option(request, "--plugin")
+
+
+@pytest.fixture(scope="session")
+def shared_data():
+    """The folder of reference data that the repository does not have."""
+    if not os.environ.get("TONEWRIGHT_SHARED"):
+        pytest.skip("TONEWRIGHT_SHARED names no folder with reference data")
+    return Path(os.environ["TONEWRIGHT_SHARED"])
+
+
+@pytest.fixture
+def scratch(tmp_path):
+    """A folder of the test's own."""
+    return tmp_path
+
+
+@pytest.fixture
+def report(request):
+    """Counts the checks of a test, and of the whole run."""
+    return Report(request.config.checks)
+
+
+# --------------------------------------------------------------------------------------------------
+# Selection and results
+
+
+def pytest_collection_modifyitems(config, items):
+    """Leaves out what only full runs take, unless someone asks for a test by its name."""
+    is_asked_for = config.option.keyword or any("::" in argument for argument in config.args)
+    left_out = [item for item in items if item.get_closest_marker("full") and not ALL and not is_asked_for]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in left_out]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem):
+    """Runs a test; fails with its failed checks, and if it has made none."""
+    arguments = {name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}
+    pyfuncitem.obj(**arguments)
+    made = arguments.get("report")
+    if made is not None:
+        if made.failures:
+            pytest.fail("\n".join(made.failures), pytrace=False)
+        if not made.passed:
+            pytest.fail("the test has made no check", pytrace=False)
+    return True
+
+
+def reasons(reporter):
+    """Why tests, or some of their checks, were skipped: each reason once, in order."""
+    found = [report.longrepr[2].removeprefix("Skipped: ") for report in reporter.stats.get("skipped", [])]
+    for report in [*reporter.stats.get("passed", []), *reporter.stats.get("failed", [])]:
+        found += [line.split("skipped: ", 1)[1] for line in report.capstdout.splitlines() if line.lstrip().startswith("skipped: ")]
+    return list(dict.fromkeys(found))
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    for reason in reasons(terminalreporter):
+        terminalreporter.line(f"skipped: {reason}")
+    terminalreporter.line(f"{config.checks.passed} passed, {config.checks.failed} failed")
+
+
+def pytest_sessionfinish(session, exitstatus):
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    if exitstatus == 0 and reporter.stats.get("skipped") and not reporter.stats.get("passed"):
+        session.exitstatus = SKIPPED

@@ -158,7 +158,7 @@ TEST(Definition, ParametersComeFromPicturesAndDisplays) {
     SceneStatistics statistics;
     statistics.log_average = 0.5;
     const ResolvedOperator resolved = resolve(*op, nullptr, {}, "");
-    EXPECT_EQ(settings_for_picture(resolved, statistics).at("a"), "0.5");
+    EXPECT_EQ(resolve_for_picture(resolved, statistics).settings.at("a"), "0.5");
     const ResolvedOperator shown = resolve_for_display(resolved, {kP3D65, true, 1000});
     EXPECT_EQ(shown.params.number("p"), 1000);
     EXPECT_EQ(shown.params.choice("gamut"), "p3d65");

@@ -4,6 +4,7 @@
 #include <array>
 #include <new>
 
+#include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 #include "unit/image/pictures.h"
@@ -15,7 +16,7 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-TonemapOptions hable() { return {.op = "hable"}; }
+TonemapOptions hable() { return {.op = resolve_picture_operator("hable")}; }
 
 TEST(Tonemap, ColorSpaceOfTheResult) {
     struct Case {
@@ -33,7 +34,8 @@ TEST(Tonemap, ColorSpaceOfTheResult) {
                                              {"hable", "native", "Linear"},
                                              {"agx_sobotka", "native", "Gamma2.2"}}};
     for (const Case& c : kCases) {
-        const ImageBuf result = tonemap(make_rgb(1, 1), {.op = c.op, .display = c.display});
+        const ImageBuf result =
+            tonemap(make_rgb(1, 1), {.op = resolve_picture_operator(c.op), .display = c.display});
         ASSERT_FALSE(result.has_error()) << result.geterror();
         EXPECT_EQ(result.spec().get_string_attribute("oiio:ColorSpace"), c.color_space)
             << c.display;
@@ -73,7 +75,8 @@ TEST(Tonemap, ContradictingMetadataGoes) {
     }
     EXPECT_NE(src.spec().find_attribute("ICCProfile"), nullptr);
 
-    const ImageBuf p3 = tonemap(src, {.op = "hable", .display = "display_p3"});
+    const ImageBuf p3 =
+        tonemap(src, {.op = resolve_picture_operator("hable"), .display = "display_p3"});
     const auto* attribute = p3.spec().find_attribute("chromaticities");
     ASSERT_NE(attribute, nullptr);
     EXPECT_FLOAT_EQ(attribute->get_float_indexed(0), 0.680F);

@@ -14,6 +14,7 @@
 
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
+#include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 #include "unit/image/pictures.h"
@@ -118,12 +119,15 @@ TEST(FileTags, EveryFormatThatIsWrittenIsReadAndToneMapped) {
         ASSERT_TRUE(picture.write(path)) << format << ": " << picture.geterror();
         const ImageBuf back = read_image(path);
         EXPECT_EQ(static_cast<int>(back.spec().channelnames.size()), back.nchannels()) << format;
-        const Tonemapper tonemapper({.op = "hable", .input = "lin_rec709"});
+        const Tonemapper tonemapper(
+            {.op = resolve_picture_operator("hable"), .input = "lin_rec709"});
         tonemap_file(tonemapper, path, folder.file("shown.exr"));
         EXPECT_EQ(read_image(folder.file("shown.exr")).spec().width, 64) << format;
         // The library, with OIIO's own reader.
         const ImageBuf lazy(path);
-        EXPECT_FALSE(tonemap(lazy, {.op = "hable", .input = "lin_rec709"}).has_error()) << format;
+        EXPECT_FALSE(tonemap(lazy, {.op = resolve_picture_operator("hable"), .input = "lin_rec709"})
+                         .has_error())
+            << format;
         tonemap_file(tonemapper, path, out);
         EXPECT_EQ(read_image(out).spec().height, 48) << format;
         ++count;

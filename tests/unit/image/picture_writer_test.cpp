@@ -17,6 +17,7 @@
 
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
+#include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 #include "unit/image/pictures.h"
@@ -45,7 +46,7 @@ std::vector<std::string> warnings_of(const ImageBuf& picture, const std::string&
 ImageBuf shown_on(const std::string& display, int channels = 3) {
     const ImageBuf scene =
         channels == 3 ? make_rgb(24, 17) : make_picture(make_spec(24, 17, {"Y"}, TypeDesc::FLOAT));
-    return tonemap(scene, {.op = "clamp", .display = display});
+    return tonemap(scene, {.op = resolve_picture_operator("clamp"), .display = display});
 }
 
 TEST(FileTags, FormatsWithoutColorTagsWarn) {

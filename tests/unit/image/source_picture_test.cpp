@@ -26,13 +26,12 @@ using OIIO::TypeDesc;
 // float operands on the way (division by alpha).
 constexpr double kTolerance = 2e-6;
 
-TonemapOptions hable() { return {.op = "hable"}; }
+TonemapOptions hable() { return {.op = resolve_picture_operator("hable")}; }
 
 ReferenceEngine reference(const TonemapOptions& o) {
     // The pictures here say nothing of their color.
     const std::string input = o.input == kAutoInput ? "lin_rec709" : o.input;
-    return ReferenceEngine(build_view(
-        make_view(resolve_operator(o.op, o.settings, o.look), input, o.exposure_stops, o.display)));
+    return ReferenceEngine(build_view(make_view(o.op, input, o.exposure_stops, o.display)));
 }
 
 void expect_error(ImageBuf& dst, bool ok, const std::string& part) {
@@ -67,7 +66,7 @@ TEST(Tonemap, PositionDecidesNotTheName) {
 }
 
 // Its look raises red above blue: grays do not stay gray.
-TonemapOptions golden() { return {.op = "agx_sobotka", .look = "golden"}; }
+TonemapOptions golden() { return {.op = resolve_picture_operator("agx_sobotka", {}, "golden")}; }
 
 TEST(Tonemap, GrayStaysGray) {
     const ImageBuf src = make_picture(make_spec(5, 5, {"Y"}, TypeDesc::HALF), 4);
@@ -144,7 +143,8 @@ std::vector<float> light_of(const ImageSpec& spec, const std::vector<float>& col
                             const std::string& input = std::string(kAutoInput)) {
     ImageBuf src(spec);
     set(src, 0, 0, color);
-    const ImageBuf result = tonemap(src, {.op = "clamp", .input = input, .display = "linear"});
+    const ImageBuf result = tonemap(
+        src, {.op = resolve_picture_operator("clamp"), .input = input, .display = "linear"});
     EXPECT_FALSE(result.has_error()) << result.geterror();
     return pixel(result, 0, 0);
 }
@@ -264,7 +264,9 @@ TEST(TonemapInput, UnknownColorsAreErrors) {
     ImageSpec spec = one_pixel();
     spec.attribute("oiio:ColorSpace", "PanaLog");
     refused(spec, "oiio:ColorSpace of the picture: input is PanaLog; expected a name of");
-    EXPECT_FALSE(tonemap(make_picture(spec), {.op = "hable", .input = "lin_rec709"}).has_error());
+    EXPECT_FALSE(tonemap(make_picture(spec),
+                         {.op = resolve_picture_operator("hable"), .input = "lin_rec709"})
+                     .has_error());
     spec.attribute("oiio:ColorSpace", "Linear");
     set_chromaticities(spec, {});
     refused(spec, "chromaticities of the picture are 0,0,0,0,0,0,0,0; expected");
@@ -290,7 +292,8 @@ TEST(TonemapInput, IsThatOfEachPicture) {
         ASSERT_TRUE(one(results[1], coded));
         ASSERT_TRUE(one(results[2], wide));
         EXPECT_TRUE(same_bits(results[0], tonemap(linear, hable())));
-        EXPECT_TRUE(same_bits(results[1], tonemap(coded, {.op = "hable", .input = "sRGB"})));
+        EXPECT_TRUE(same_bits(results[1], tonemap(coded, {.op = resolve_picture_operator("hable"),
+                                                          .input = "sRGB"})));
         EXPECT_FALSE(same_bits(results[0], results[1]));
         EXPECT_FALSE(same_bits(results[0], results[2]));
     }

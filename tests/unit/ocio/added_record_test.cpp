@@ -38,7 +38,7 @@ TEST(AddedRecord, ReadsWhatItWrites) {
     record.pieces = {{"before: \"quoted\"\n", "piece: [1]\n"}};
     record.files = {"tonewright/a_0123456789abcdef.clf"};
     record.options.views = {"AgX", "agx_blender:look=punchy"};
-    record.options.custom = {{"Mine", "hable"}};
+    record.custom = {{"Mine", "hable"}};
     record.options.exposure_stops = {-1, 0.5};
     std::filesystem::create_directories(folder / "tonewright");
     write(folder / AddedRecord::path_of(config), record.text("a: 1\n"));
@@ -48,8 +48,8 @@ TEST(AddedRecord, ReadsWhatItWrites) {
     EXPECT_EQ(read_back.pieces[0].text, record.pieces[0].text);
     EXPECT_EQ(read_back.files, record.files);
     EXPECT_EQ(read_back.options.views, record.options.views);
-    ASSERT_EQ(read_back.options.custom.size(), 1U);
-    EXPECT_EQ(read_back.options.custom[0].name, "Mine");
+    ASSERT_EQ(read_back.custom.size(), 1U);
+    EXPECT_EQ(read_back.custom[0].name, "Mine");
     EXPECT_EQ(read_back.options.exposure_stops, record.options.exposure_stops);
     EXPECT_NE(AddedRecord::mark_of("a: 1\n"), AddedRecord::mark_of("a: 2\n"));
     // A file outside the folder of tables must not be removed later.

@@ -30,7 +30,7 @@ ConfigOptions small() {
 
 std::string error_of(const ConfigOptions& options) {
     try {
-        check_config_options(options);
+        (void)ConfigPlan(options);
     } catch (const Error& e) {
         return e.what();
     }
@@ -75,17 +75,17 @@ TEST(Config, OptionsAreCheckedBeforeTheWork) {
     options.views = {"none"};
     EXPECT_NE(error_of(options), "no error") << "nothing to show";
     options = small();
-    options.custom = {{std::string(64, 'n'), "hable"}};
+    options.custom = {{std::string(64, 'n'), resolve_operator("hable")}};
     EXPECT_NE(error_of(options).find("at most 63 bytes"), std::string::npos);
     EXPECT_THROW((void)make_config(options), Error) << "the same error";
 }
 
 TEST(Config, WarnsOfOperatorsThatMeasurePictures) {
-    EXPECT_TRUE(config_warnings(small()).empty());
+    EXPECT_TRUE(ConfigPlan(small()).warnings().empty());
     ConfigOptions options = small();
     options.views = {"clamp", "drago", "drago"};
     options.views.pop_back();
-    const std::vector<std::string> warnings = config_warnings(options);
+    const std::vector<std::string> warnings = ConfigPlan(options).warnings();
     ASSERT_EQ(warnings.size(), 1U);
     EXPECT_EQ(warnings[0].find("a config cannot measure pictures: "), 0U) << warnings[0];
     EXPECT_EQ(warnings[0].find('\n'), std::string::npos) << "one line";

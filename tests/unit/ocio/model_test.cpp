@@ -249,7 +249,7 @@ TEST(ConfigModel, ViewsAreChosenByNameOperatorAndPreset) {
                            .displays = {"rec1886"},
                            .looks = {"AgX - Greyscale"},
                            .working = "lin_ap1",
-                           .custom = {{"Studio", "reinhard_extended:white=6"}},
+                           .custom = {{"Studio", resolve_operator("reinhard_extended:white=6")}},
                            .exposure_stops = {-1}});
     std::vector<std::string> names;
     for (const auto& view : model.views)
@@ -267,9 +267,12 @@ TEST(ConfigModel, ViewsAreChosenByNameOperatorAndPreset) {
     EXPECT_THROW((void)make_config_model({.views = {"AgY"}}), Error);
     EXPECT_THROW((void)make_config_model({.looks = {"AgX - Funky"}}), Error);
     EXPECT_THROW((void)make_config_model({.displays = {"crt"}}), Error);
-    EXPECT_THROW((void)make_config_model({.custom = {{"Hable", "reinhard"}}}), Error)
+    EXPECT_THROW((void)make_config_model({.custom = {{"Hable", resolve_operator("reinhard")}}}),
+                 Error)
         << "a name twice";
-    EXPECT_THROW((void)make_config_model({.custom = {{"Raw", "reinhard"}}}), Error) << "ours";
+    EXPECT_THROW((void)make_config_model({.custom = {{"Raw", resolve_operator("reinhard")}}}),
+                 Error)
+        << "ours";
 }
 
 TEST(ConfigModel, HasEveryOperatorDisplayAndSpace) {

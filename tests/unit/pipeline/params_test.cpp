@@ -201,24 +201,26 @@ SceneStatistics some_scene() {
 }
 
 TEST(Statistics, FillUnsetParameters) {
-    EXPECT_EQ(settings_for_picture(resolve_operator("exponential"), some_scene()),
+    EXPECT_EQ(resolve_for_picture(resolve_operator("exponential"), some_scene()).settings,
               (Settings{{"average", "0.37"}}));
-    EXPECT_EQ(settings_for_picture(resolve_operator("drago"), some_scene()),
+    EXPECT_EQ(resolve_for_picture(resolve_operator("drago"), some_scene()).settings,
               (Settings{{"log_average", "0.11"}, {"maximum", "41.7"}}));
     EXPECT_EQ(resolve_operator("exponential").params.number("average"), 1)
         << "without a picture the default";
     // An operator that asks nothing of a picture gets nothing.
-    EXPECT_EQ(settings_for_picture(resolve_operator("hable"), some_scene()), Settings{});
-    EXPECT_EQ(settings_for_picture(resolve_operator("hable", {{"white", "4"}}), some_scene()),
-              (Settings{{"white", "4"}}));
+    EXPECT_EQ(resolve_for_picture(resolve_operator("hable"), some_scene()).settings, Settings{});
+    EXPECT_EQ(
+        resolve_for_picture(resolve_operator("hable", {{"white", "4"}}), some_scene()).settings,
+        (Settings{{"white", "4"}}));
 }
 
 TEST(Statistics, TheUserWins) {
-    EXPECT_EQ(
-        settings_for_picture(resolve_operator("exponential", {{"average", "3"}}), some_scene()),
-        (Settings{{"average", "3"}}));
-    EXPECT_EQ(settings_for_picture(resolve_operator("drago", {{"maximum", "9"}, {"bias", "0.7"}}),
-                                   some_scene()),
+    EXPECT_EQ(resolve_for_picture(resolve_operator("exponential", {{"average", "3"}}), some_scene())
+                  .settings,
+              (Settings{{"average", "3"}}));
+    EXPECT_EQ(resolve_for_picture(resolve_operator("drago", {{"maximum", "9"}, {"bias", "0.7"}}),
+                                  some_scene())
+                  .settings,
               (Settings{{"bias", "0.7"}, {"log_average", "0.11"}, {"maximum", "9"}}));
 }
 
@@ -241,32 +243,33 @@ class PresetForTest {
 TEST(Statistics, ThenThePreset) {
     const PresetForTest preset("drago", {"bright", "Bright", {{"maximum", "20"}}});
     const Settings of_picture =
-        settings_for_picture(resolve_operator("drago:bright"), some_scene());
+        resolve_for_picture(resolve_operator("drago:bright"), some_scene()).settings;
     EXPECT_EQ(of_picture, (Settings{{"log_average", "0.11"}}));
     const Params params = resolve_operator("drago:bright", of_picture).params;
     EXPECT_EQ(params.number("maximum"), 20);
     EXPECT_EQ(params.number("log_average"), 0.11);
     const Settings of_user =
-        settings_for_picture(resolve_operator("drago:bright", {{"maximum", "7"}}), some_scene());
+        resolve_for_picture(resolve_operator("drago:bright", {{"maximum", "7"}}), some_scene())
+            .settings;
     EXPECT_EQ(resolve_operator("drago:bright", of_user).params.number("maximum"), 7);
 }
 
 TEST(Statistics, AreLimitedToTheInterval) {
     SceneStatistics s = some_scene();
     s.mean_luminance = 1e9;
-    EXPECT_EQ(settings_for_picture(resolve_operator("exponential"), s),
+    EXPECT_EQ(resolve_for_picture(resolve_operator("exponential"), s).settings,
               (Settings{{"average", "65504"}}));
-    EXPECT_EQ(settings_for_picture(resolve_operator("exponential"), {}),
+    EXPECT_EQ(resolve_for_picture(resolve_operator("exponential"), {}).settings,
               (Settings{{"average", "1e-06"}}));
 }
 
 TEST(Statistics, KeepEveryDigit) {
     SceneStatistics s;
     s.mean_luminance = 0.1 + 0.2;  // 0.30000000000000004
-    EXPECT_EQ(
-        resolve_operator("exponential", settings_for_picture(resolve_operator("exponential"), s))
-            .params.number("average"),
-        0.1 + 0.2);
+    EXPECT_EQ(resolve_operator("exponential",
+                               resolve_for_picture(resolve_operator("exponential"), s).settings)
+                  .params.number("average"),
+              0.1 + 0.2);
 }
 
 TEST(Statistics, OfEveryPictureAreAccepted) {
@@ -277,12 +280,14 @@ TEST(Statistics, OfEveryPictureAreAccepted) {
     SceneStatistics wide = {1, 100, 1e-45, 65504, {100, 100, 100}, {65504, 65504, 65504}};
     for (const SceneStatistics& s : {SceneStatistics{}, uniform, spark, dim, wide, some_scene()}) {
         for (const Operator& op : all_operators()) {
-            EXPECT_EQ(resolve_error(op.id, settings_for_picture(resolve_operator(op.id), s)),
-                      "no error");
+            EXPECT_EQ(
+                resolve_error(op.id, resolve_for_picture(resolve_operator(op.id), s).settings),
+                "no error");
             for (const Preset& preset : op.presets) {
                 const std::string name = op.id + ":" + preset.id;
-                EXPECT_EQ(resolve_error(name, settings_for_picture(resolve_operator(name), s)),
-                          "no error");
+                EXPECT_EQ(
+                    resolve_error(name, resolve_for_picture(resolve_operator(name), s).settings),
+                    "no error");
             }
         }
     }

@@ -14,7 +14,7 @@ namespace {
 
 VerifyOptions quick() {
     VerifyOptions options;
-    options.operators = {"reinhard"};
+    options.operators = {resolve_operator("reinhard")};
     options.lattice_edge = 3;
     options.random_count = 200;
     options.with_gpu = false;
@@ -48,7 +48,7 @@ TEST(Verify, EveryBackendIsWithinItsBound) {
 
 TEST(Verify, RequestsAreChecked) {
     for (const auto& change : std::vector<void (*)(VerifyOptions&)>{
-             [](VerifyOptions& o) { o.operators = {"reinhardd"}; },
+             [](VerifyOptions& o) { o.operators = {resolve_picture_operator("reinhard_local")}; },
              [](VerifyOptions& o) { o.displays = {"srgbb"}; },
              [](VerifyOptions& o) { o.input = "lin_rec710"; },
              [](VerifyOptions& o) {

@@ -123,7 +123,7 @@ struct CompiledCurve {
     /// In instructions a vector, roughly.
     [[nodiscard]] int cost() const noexcept;
 
-  private:
+    /// @pre the form is segments
     [[nodiscard]] std::size_t segment_of(float x) const noexcept;
 };
 

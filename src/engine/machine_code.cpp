@@ -12,6 +12,9 @@
 #include <limits>
 #include <map>
 
+#include "engine/simd_kernels.h"
+#include "engine/vector_code.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "engine/vector_code.h"
+#include "engine/vector_ir.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "engine/vector_code.h"
+#include "engine/vector_ir.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {

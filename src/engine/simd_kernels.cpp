@@ -39,7 +39,6 @@ TONEWRIGHT_NAMESPACE_END
 #define HWY_TARGET_INCLUDE "engine/simd_kernels.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 
-#include "engine/machine_code.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -302,12 +301,6 @@ constexpr auto kKernels = kernels_of(std::make_index_sequence<std::size(kOperati
 // ---------------------------------------------------------------------------------------------
 // Pixels in and out
 
-/// The planes are the interleaved channels of pixels `stride` floats long, in order.
-template <class T>
-HWY_INLINE bool are_interleaved(const std::array<T*, 3>& plane, std::ptrdiff_t stride) {
-    return (stride == 3 || stride == 4) && plane[1] == plane[0] + 1 && plane[2] == plane[0] + 2;
-}
-
 /// use(r, g, b, i) with the vectors of pixels from the i-th on. Pads with 0 to `padded` pixels.
 template <class F>
 HWY_INLINE void read_pixels(const std::array<const float*, 3>& in, std::ptrdiff_t stride,
@@ -384,70 +377,31 @@ HWY_INLINE void write_pixels(const std::array<float*, 3>& out, std::ptrdiff_t st
     }
 }
 
-/// The planes from pixel `first` on.
-template <class T>
-std::array<T*, 3> from(const std::array<T*, 3>& plane, std::ptrdiff_t stride, std::size_t first) {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(first) * stride;
-    return {plane[0] + at, plane[1] + at, plane[2] + at};
-}
-
 #if HWY_TARGET <= HWY_AVX2
 
-/// One part after the other over a tile.
-void run_parts(const MachineCode& code, const Numbers& numbers, PixelLayout layout,
-               unsigned char* tile, const float* in, float* out, std::size_t count) {
-    for (std::size_t part = 0; part < code.part_count(layout); ++part)
-        code.run(part, layout, numbers, tile, in, out, count / hn::Lanes(DF()));
+void pack(const std::array<const float*, 3>& in, std::ptrdiff_t stride, std::size_t count,
+          std::size_t padded, float* rgb) noexcept {
+    const auto store = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i)
+                           HWY_ATTR { hn::StoreInterleaved3(r, g, b, DF(), rgb + 3 * i); };
+    read_pixels(in, stride, count, padded, store);
 }
 
-void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
-                 const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
-                 const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
-    const VectorProgram& program = code.machine->program();
-    std::size_t done = 0;
-    if (in_stride == out_stride && are_interleaved(in, in_stride) &&
-        are_interleaved(out, out_stride)) {
-        const PixelLayout layout = in_stride == 3 ? PixelLayout::rgb : PixelLayout::rgba;
-        const auto stride = static_cast<std::size_t>(in_stride);
-        // What follows the last pixel's three channels is not ours to read.
-        const std::size_t whole =
-            (stride == 4 && count > 0 ? count - 1 : count) / kLaneMultiple * kLaneMultiple;
-        // What is one part keeps nothing in a tile.
-        const std::size_t step =
-            code.machine->part_count(layout) == 1 ? HWY_MAX(whole, 1) : program.tile;
-        for (; done < whole; done += HWY_MIN(step, whole - done)) {
-            run_parts(*code.machine, numbers, layout, tile, in[0] + done * stride,
-                      out[0] + done * stride, HWY_MIN(step, whole - done));
-        }
-    }
-    // The last pixels, and those that lie in another way, are copied.
-    alignas(kVectorBytes) float rgb[3 * kMaxTile];
-    for (; done < count; done += HWY_MIN(program.tile, count - done)) {
-        const std::size_t n = HWY_MIN(program.tile, count - done);
-        const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
-        const auto pack = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i)
-                              HWY_ATTR { hn::StoreInterleaved3(r, g, b, DF(), rgb + 3 * i); };
-        read_pixels(from(in, in_stride, done), in_stride, n, padded, pack);
-        run_parts(*code.machine, numbers, PixelLayout::rgb, tile, rgb, rgb, padded);
-        const auto unpack = [&](std::size_t i) HWY_ATTR {
-            Colors x;
-            hn::LoadInterleaved3(DF(), rgb + 3 * i, x.channel[0], x.channel[1], x.channel[2]);
-            return x;
-        };
-        write_pixels(from(out, out_stride, done), out_stride, n, unpack);
-    }
+void unpack(const float* rgb, const std::array<float*, 3>& out, std::ptrdiff_t stride,
+            std::size_t count) noexcept {
+    const auto load = [&](std::size_t i) HWY_ATTR {
+        Colors x;
+        hn::LoadInterleaved3(DF(), rgb + 3 * i, x.channel[0], x.channel[1], x.channel[2]);
+        return x;
+    };
+    write_pixels(out, stride, count, load);
 }
 
 #endif
 
-void run(const Code& code, const Numbers& numbers, const std::array<const float*, 3>& in,
-         std::ptrdiff_t in_stride, const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
-         std::size_t count) noexcept {
+void interpret(const Code& code, const Numbers& numbers, const std::array<const float*, 3>& in,
+               std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
+               std::ptrdiff_t out_stride, std::size_t count) noexcept {
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
-#if HWY_TARGET <= HWY_AVX2
-    if (code.machine)
-        return run_machine(code, numbers, registers, in, in_stride, out, out_stride, count);
-#endif
     const auto* constants = reinterpret_cast<const unsigned char*>(numbers.constants.data());
     const DF d;
     for (std::size_t begin = 0; begin < count; begin += code.tile) {
@@ -473,20 +427,24 @@ void run(const Code& code, const Numbers& numbers, const std::array<const float*
     }
 }
 
-#if HWY_TARGET <= HWY_AVX3
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true};
-#elif HWY_TARGET <= HWY_AVX2
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false};
-#else
-constexpr std::optional<VectorMachine> kMachine;
-#endif
-
 // Permutes of AVX-512, loads of rows elsewhere.
 constexpr CurveForm kCurveForm = HWY_TARGET <= HWY_AVX3 ? CurveForm::segments
                                  : HWY_NATIVE_FMA       ? CurveForm::rows
                                                         : CurveForm::rows_unfused;
 
-constexpr Target kTarget = {.curve_form = kCurveForm, .machine = kMachine, .run = run};
+constexpr Target kTarget = {
+    .curve_form = kCurveForm,
+#if HWY_TARGET <= HWY_AVX3
+    .machine = VectorMachine{16, 32, true},
+#elif HWY_TARGET <= HWY_AVX2
+    .machine = VectorMachine{8, 16, false},
+#endif
+    .interpret = interpret,
+#if HWY_TARGET <= HWY_AVX2
+    .pack = pack,
+    .unpack = unpack,
+#endif
+};
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE

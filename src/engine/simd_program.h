@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "engine/assemble.h"
 #include "engine/curve_fitting.h"
 #include "engine/simd_kernels.h"
 #include "engine/tape.h"
@@ -10,18 +11,17 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// The float program of a pipeline. The passes that change the last bits are here and only here:
+/// The float program of a pipeline. Only these steps change the last bits of results:
 ///
-/// 1. neighboring matrices multiplied; division by a constant as multiplication by its reciprocal;
-///    small whole powers as products;
-/// 2. functions of one value compiled to piecewise polynomials, on instruction sets where that is
-///    faster (curve_fitting.h);
-/// 3. the values that float is too coarse for are kept in double (precision.h);
-/// 4. products and sums contracted to fused multiply-adds and dot products, comparisons joined to
-///    their selects;
-/// 5. registers allocated, and the tile made as large as the first-level cache allows;
-/// 6. for AVX2 and AVX-512, machine code of the same (machine_code.h).
-/// @param has_curves  false leaves 2 out, to test the kernels that curves replace
+/// - rewrite.h replaces operations by cheaper ones;
+/// - curve_fitting.h compiles functions of one value to piecewise polynomials, on instruction sets
+///   where that is faster;
+/// - precision.h chooses the values that are kept in double;
+/// - select.h contracts products and sums to fused multiply-adds and dot products.
+///
+/// assemble.h then gives values their registers, and machine_code.h makes machine code of the
+/// program for AVX2 and AVX-512.
+/// @param has_curves  false compiles no curves, to test the kernels that curves replace
 /// @param uniforms  those that the pipeline may have
 [[nodiscard]] Code compile(const Pipeline& pipeline, double max_error = kSimdError,
                            const Target& target = find_target(), bool has_curves = true,
@@ -30,11 +30,9 @@ namespace simd {
 /// How many pipelines were compiled so far, for tests.
 [[nodiscard]] std::size_t compilations() noexcept;
 
-/// Where a code has the curves that its tape refers to.
-using CurveIndex = std::map<const CompiledCurve*, std::uint32_t>;
 /// A program with what lies behind it.
 struct Steps {
-    /// After passes 1 to 3.
+    /// After rewrites and curve fitting.
     std::vector<TapeInstruction> tape;
     std::array<std::uint32_t, 3> outputs{};
     std::vector<bool> in_double;
@@ -42,12 +40,24 @@ struct Steps {
     CurveIndex curve_index;
     Code code;
 };
+[[nodiscard]] std::vector<Code> compile_for_all_targets(const Pipeline& pipeline, double max_error);
 [[nodiscard]] Steps compile_in_steps(const Pipeline& pipeline, const LiveUniforms& uniforms,
                                      double max_error, const Target& target);
 
 /// @param values   see Tape::evaluate_numbers()
 /// @param numbers  a copy of the code's
 void set_uniforms(const Code& code, const std::vector<double>& values, Numbers& numbers);
+
+/// Runs the code over `count` pixels: its machine code if there is any, else the interpreter.
+/// @param numbers  the code's own, or a copy in which uniforms have other values
+void run(const Code& code, const Numbers& numbers, const std::array<const float*, 3>& in,
+         std::ptrdiff_t in_stride, const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
+         std::size_t count) noexcept;
+inline void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+                const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
+                std::size_t count) noexcept {
+    run(code, code.numbers, in, in_stride, out, out_stride, count);
+}
 
 }  // namespace simd
 TONEWRIGHT_NAMESPACE_END

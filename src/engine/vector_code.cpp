@@ -7,6 +7,7 @@
 #include <map>
 
 #include "engine/schedule.h"
+#include "engine/simd_kernels.h"
 #include "engine/vector_writer-inl.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

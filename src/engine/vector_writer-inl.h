@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Writes the instructions of vector_code.h: Writer one by one, and `recorded` by the names of
+// Writes the instructions of vector_ir.h: Writer one by one, and `recorded` by the names of
 // Highway's functions, for simd_math-inl.h.
 #pragma once
 
@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 
-#include "engine/vector_code.h"
+#include "engine/vector_ir.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {

@@ -12,21 +12,16 @@
 #include <limits>
 #include <map>
 
-#include "engine/simd_kernels.h"
+#include "engine/machine_registers.h"
 #include "engine/vector_code.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
-constexpr std::int32_t kNone = VectorOperand::kNone;
-constexpr int kFirstMask = 1;  // k0 means "no mask"
-constexpr int kMaskEnd = 6;
 /// Blocks of pixels that a turn of the loop computes side by side. Three gained nothing: registers
 /// run out.
 constexpr int kInterleaved = 2;
-/// Registers that an instruction may take beside those of its operands (gather).
-constexpr int kSpare = 3;
 /// How far ahead pixels are fetched by code that runs over all of them at once, in bytes. 512 to
 /// 4096 are equally fast with Zen 4, a third faster than without; with Emerald Rapids and AVX-512,
 /// 2048 is 1.1 times as fast as 1024 and 4096.
@@ -38,19 +33,91 @@ constexpr int kKeptBytes = 64 + 4 * 64 * kInterleaved;
 /// An index in the vector register with this number is none for QEMU 7.2 and for FEX before its
 /// pull request 3776, as it is in a general register: gathers read the first entry of the table.
 constexpr int kNoIndex = 4;
+using X86 = Xbyak::CodeGenerator;
+using Register = Xbyak::Xmm;
+using Xbyak::Operand;
+
+/// Writes an instruction of two operands. Fused multiply-adds read the result, too.
+using Encode = void (*)(X86&, const Register&, const Register&, const Operand&);
+template <void (X86::*kInstruction)(const Register&, const Register&, const Operand&)>
+void encode(X86& code, const Register& result, const Register& a, const Operand& b) {
+    (code.*kInstruction)(result, a, b);
+}
+template <void (X86::*kInstruction)(const Register&, const Operand&, const Operand&)>
+void encode(X86& code, const Register& result, const Register& a, const Operand& b) {
+    (code.*kInstruction)(result, a, b);
+}
+
+/// The instructions of an operation for floats and for doubles.
+struct Binary {
+    VectorOp op;
+    Encode of_floats, of_doubles;
+    bool commutes = false;
+};
+constexpr Binary kBinary[] = {
+    {VectorOp::add, encode<&X86::vaddps>, encode<&X86::vaddpd>, true},
+    {VectorOp::subtract, encode<&X86::vsubps>, encode<&X86::vsubpd>},
+    {VectorOp::multiply, encode<&X86::vmulps>, encode<&X86::vmulpd>, true},
+    {VectorOp::divide, encode<&X86::vdivps>, encode<&X86::vdivpd>},
+    {VectorOp::minimum, encode<&X86::vminps>, encode<&X86::vminpd>},
+    {VectorOp::maximum, encode<&X86::vmaxps>, encode<&X86::vmaxpd>},
+    {VectorOp::bit_and, encode<&X86::vandps>, encode<&X86::vandpd>, true},
+    {VectorOp::bit_or, encode<&X86::vorps>, encode<&X86::vorpd>, true},
+    {VectorOp::bit_xor, encode<&X86::vxorps>, encode<&X86::vxorpd>, true},
+    {VectorOp::bit_and_not, encode<&X86::vandnps>, encode<&X86::vandnpd>},
+    {VectorOp::integer_add, encode<&X86::vpaddd>, encode<&X86::vpaddq>, true},
+    {VectorOp::integer_subtract, encode<&X86::vpsubd>, encode<&X86::vpsubq>},
+};
+
+/// The three orders of operands 1 (the result), 2 and 3 (maybe in memory): 132 computes 1 * 3 + 2.
+struct FusedOrders {
+    Encode of_213, of_132, of_231;
+};
+struct Fused {
+    VectorOp op;
+    FusedOrders of_floats, of_doubles;
+};
+constexpr Fused kFused[] = {
+    {VectorOp::multiply_add,
+     {encode<&X86::vfmadd213ps>, encode<&X86::vfmadd132ps>, encode<&X86::vfmadd231ps>},
+     {encode<&X86::vfmadd213pd>, encode<&X86::vfmadd132pd>, encode<&X86::vfmadd231pd>}},
+    {VectorOp::multiply_subtract,
+     {encode<&X86::vfmsub213ps>, encode<&X86::vfmsub132ps>, encode<&X86::vfmsub231ps>},
+     {encode<&X86::vfmsub213pd>, encode<&X86::vfmsub132pd>, encode<&X86::vfmsub231pd>}},
+    {VectorOp::subtract_product,
+     {encode<&X86::vfnmadd213ps>, encode<&X86::vfnmadd132ps>, encode<&X86::vfnmadd231ps>},
+     {encode<&X86::vfnmadd213pd>, encode<&X86::vfnmadd132pd>, encode<&X86::vfnmadd231pd>}},
+};
+
 /// Encodings of comparisons (ordered, quiet).
+struct Comparison {
+    VectorOp op;
+    std::uint8_t predicate, swapped;
+};
 constexpr std::uint8_t kEqual = 0x00;
 constexpr std::uint8_t kLess = 0x11;
 constexpr std::uint8_t kLessEqual = 0x12;
 constexpr std::uint8_t kGreaterEqual = 0x1D;
 constexpr std::uint8_t kGreater = 0x1E;
+constexpr Comparison kComparisons[] = {
+    {VectorOp::equal, kEqual, kEqual},
+    {VectorOp::less, kLess, kGreater},
+    {VectorOp::less_equal, kLessEqual, kGreaterEqual},
+    {VectorOp::greater, kGreater, kLess},
+    {VectorOp::greater_equal, kGreaterEqual, kLessEqual},
+};
 
-/// Straight-line code in a loop over blocks of pixels. Registers are given as the code is
-/// written; where none is free, the value that is needed latest goes to the stack (Belady).
-class Generator : public Xbyak::CodeGenerator {
+template <class Row, std::size_t kSize>
+const Row* find_row(const Row (&rows)[kSize], VectorOp op) {
+    const auto has_op = [op](const Row& row) { return row.op == op; };
+    const Row* const found = std::find_if(std::begin(rows), std::end(rows), has_op);
+    return found == std::end(rows) ? nullptr : found;
+}
+
+/// Straight-line code in a loop over blocks of pixels.
+class Generator : public MachineRegisters {
   public:
-    explicit Generator(const VectorMachine& machine)
-        : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow), machine_(machine) {}
+    explicit Generator(const VectorMachine& machine) : MachineRegisters(machine) {}
 
     /// Where the function begins.
     /// @param fetch_ahead, claim_ahead  see fetch(); not at all where the first is 0
@@ -95,23 +162,12 @@ class Generator : public Xbyak::CodeGenerator {
     }
 
   private:
-    /// Registers of a kind.
-    struct File {
-        int first, end;  // those that values may have
-        std::vector<std::int32_t> holder = std::vector(static_cast<std::size_t>(end), kNone);
-        std::vector<bool> is_locked = std::vector<bool>(holder.size());
-    };
-    struct State {
-        int reg = -1;
-        bool is_mask = false;  // in k
-        int slot = -1;         // on the stack
-        std::vector<std::size_t> uses;
-        std::size_t next = 0;  // of the uses
-    };
-
     /// While there are as many blocks.
     void write_loop(const VectorCode& code, int blocks) {
         begin(code);
+        address_ = 0;
+        row_index_ = kNone;
+        index_pair_.fill(kNone);
         Xbyak::Label loop, end;
         sub(rcx, blocks);
         jl(end, T_NEAR);
@@ -121,13 +177,12 @@ class Generator : public Xbyak::CodeGenerator {
         if (fetch_ahead_ > 0) fetch(blocks);
         for (position_ = 0; position_ < code.instructions.size(); ++position_) {
             const VectorInstruction& step = code.instructions[position_];
-            if (step.result != kNone && state(step.result).uses.empty()) {
+            if (is_unread(step)) {
                 release(step);  // nobody reads it
             } else {
                 write(step);
             }
-            free_slots_.insert(free_slots_.end(), dropped_slots_.begin(), dropped_slots_.end());
-            dropped_slots_.clear();
+            free_dropped_slots();
         }
         add(r8, machine_.bytes() * blocks);
         add(rsi, pixel_bytes() * blocks);
@@ -152,334 +207,82 @@ class Generator : public Xbyak::CodeGenerator {
         return (layout_ == PixelLayout::rgb ? 3 : 4) * machine_.bytes();
     }
 
-    // --- registers -------------------------------------------------------------------------------
-
-    void begin(const VectorCode& code) {
-        state_.assign(static_cast<std::size_t>(code.value_count), {});
-        vectors_ = {0, machine_.registers};
-        masks_ = {kFirstMask, kMaskEnd};
-        address_ = 0;
-        row_index_ = kNone;
-        index_pair_.fill(kNone);
-        free_slots_.clear();
-        for (int slot = 0; slot < slot_count_; ++slot)
-            free_slots_.push_back(slot);
-        for (std::size_t i = 0; i < code.instructions.size(); ++i) {
-            const VectorInstruction& step = code.instructions[i];
-            for (const VectorOperand& operand : step.in) {
-                if (operand.is_value()) state(operand.value).uses.push_back(i);
-            }
-            if (step.mask != kNone) state(step.mask).uses.push_back(i);
-            if (step.result != kNone)
-                state(step.result).is_mask = machine_.has_avx512 && makes_mask(step.op);
-        }
-    }
-
-    /// The constants that are read most stay in registers that the code does not need: short code
-    /// waits for loads more than for arithmetic (Reinhard by luminance: 1.06 times as fast).
-    void keep_constants(const VectorCode& code) {
-        kept_.clear();
-        std::vector<int> ending(code.instructions.size());
-        for (const State& s : state_) {
-            if (!s.uses.empty()) ++ending[s.uses.back()];
-        }
-        std::map<std::pair<std::int32_t, bool>, int> uses;  // by offset in the pool, and width
-        int alive = 0;
-        int most_alive = 0;
-        for (std::size_t i = 0; i < code.instructions.size(); ++i) {
-            const VectorInstruction& step = code.instructions[i];
-            if (step.result != kNone && !state(step.result).uses.empty()) ++alive;
-            most_alive = std::max(most_alive, alive);
-            alive -= ending[i];
-            // Constants of AVX2 fill a vector, whatever they are.
-            const bool is_wide = machine_.has_avx512 && step.wide &&
-                                 step.op != VectorOp::promote_low &&
-                                 step.op != VectorOp::promote_high;
-            for (const VectorOperand& operand : step.in) {
-                if (operand.is_constant()) ++uses[{operand.pool, is_wide}];
-            }
-        }
-        std::multimap<int, std::pair<std::int32_t, bool>, std::greater<>> by_uses;
-        for (const auto& [constant, count] : uses)
-            by_uses.emplace(count, constant);
-        for (const auto& [count, constant] : by_uses) {
-            if (vectors_.end <= most_alive + kSpare) break;
-            kept_.push_back(constant.first);
-            load_constant(vector(--vectors_.end), constant.first, constant.second);
-        }
-    }
-    /// Of a constant, or kNone.
-    [[nodiscard]] int kept_in(const VectorOperand& operand) const {
-        const auto found = std::find(kept_.begin(), kept_.end(), operand.pool);
-        if (!operand.is_constant() || found == kept_.end()) return kNone;
-        return machine_.registers - 1 - static_cast<int>(found - kept_.begin());
-    }
-
-    State& state(std::int32_t value) { return state_[static_cast<std::size_t>(value)]; }
-    [[nodiscard]] std::size_t next_use(std::int32_t value) {
-        const State& s = state(value);
-        return s.next < s.uses.size() ? s.uses[s.next] : std::numeric_limits<std::size_t>::max();
-    }
-
-    [[nodiscard]] Xbyak::Xmm vector(int reg) const {
-        return {machine_.has_avx512 ? Xbyak::Operand::ZMM : Xbyak::Operand::YMM, reg};
-    }
-    void unlock() {
-        for (File* file : {&vectors_, &masks_})
-            std::fill(file->is_locked.begin(), file->is_locked.end(), false);
-    }
-    File& file_of(const State& s) { return s.is_mask ? masks_ : vectors_; }
-    Xbyak::Address slot_of(int slot) {
-        return ptr[rsp + static_cast<std::size_t>(slot * machine_.bytes())];
-    }
-
-    int take_slot() {
-        if (free_slots_.empty()) return slot_count_++;
-        const int slot = free_slots_.back();
-        free_slots_.pop_back();
-        return slot;
-    }
-
-    /// A register that holds nothing, not locked.
-    int take(File& file) {
-        int best = -1;
-        std::size_t latest = 0;
-        for (int r = file.first; r < file.end; ++r) {
-            const auto i = static_cast<std::size_t>(r);
-            if (file.is_locked[i]) continue;
-            if (file.holder[i] == kNone) {
-                best = r;
-                break;
-            }
-            const std::size_t use = next_use(file.holder[i]);
-            if (best < 0 || use > latest) {
-                best = r;
-                latest = use;
-            }
-        }
-        std::int32_t& holder = file.holder[static_cast<std::size_t>(best)];
-        if (holder != kNone) {
-            State& s = state(holder);
-            if (s.slot < 0) {
-                s.slot = take_slot();
-                if (s.is_mask) {
-                    kmovw(slot_of(s.slot), Xbyak::Opmask(best));
-                } else {
-                    vmovaps(slot_of(s.slot), vector(best));
-                }
-            }
-            s.reg = -1;
-            holder = kNone;
-        }
-        file.is_locked[static_cast<std::size_t>(best)] = true;
-        return best;
-    }
-    int take() { return take(vectors_); }
-
-    /// The operand in a register, which stays its own until the instruction is written.
-    Xbyak::Xmm in_register(const VectorOperand& operand, bool wide) {
-        if (const int r = kept_in(operand); r != kNone) return vector(r);
-        if (operand.is_constant()) {
-            const Xbyak::Xmm r = vector(take());
-            load_constant(r, operand.pool, wide);
-            return r;
-        }
-        State& s = state(operand.value);
-        if (s.reg < 0) {
-            hold(operand.value, take());
-            vmovaps(vector(s.reg), slot_of(s.slot));
-        }
-        vectors_.is_locked[static_cast<std::size_t>(s.reg)] = true;
-        return vector(s.reg);
-    }
-    Xbyak::Address constant(std::int32_t offset) {
-        return ptr[rax + static_cast<std::size_t>(offset)];
-    }
-    void load_constant(const Xbyak::Xmm& r, std::int32_t offset, bool wide) {
-        if (!machine_.has_avx512) {
-            vmovaps(r, constant(offset));
-        } else if (wide) {
-            vbroadcastsd(zmm(r), constant(offset));
-        } else {
-            vbroadcastss(r, constant(offset));
-        }
-    }
-    [[nodiscard]] bool is_in_memory(const VectorOperand& operand) {
-        return operand.is_constant() ? kept_in(operand) == kNone : state(operand.value).reg < 0;
-    }
-    /// An operand that is in memory, as the last operand of an instruction.
-    Xbyak::Address in_memory(const VectorOperand& operand) {
-        if (operand.is_constant())
-            return machine_.has_avx512 ? ptr_b[rax + operand.pool] : constant(operand.pool);
-        return slot_of(state(operand.value).slot);
-    }
-
-    /// Counts the uses of this instruction; what is not used any more leaves its register.
-    void release(const VectorInstruction& step) {
-        unlock();
-        for (const VectorOperand& operand : step.in) {
-            if (operand.is_value()) drop(operand.value);
-        }
-        if (step.mask != kNone) drop(step.mask);
-    }
-    void drop(std::int32_t value) {
-        State& s = state(value);
-        while (s.next < s.uses.size() && s.uses[s.next] <= position_)
-            ++s.next;
-        if (s.next < s.uses.size()) return;
-        if (s.reg >= 0) {
-            file_of(s).holder[static_cast<std::size_t>(s.reg)] = kNone;
-            s.reg = -1;
-        }
-        if (s.slot >= 0) {
-            // This instruction may read it yet, and spill another value before it does.
-            dropped_slots_.push_back(s.slot);
-            s.slot = -1;
-        }
-    }
-    /// Nobody reads its register after this instruction.
-    [[nodiscard]] bool dies(const VectorOperand& operand) {
-        if (operand.is_constant()) return kept_in(operand) == kNone;  // a copy
-        if (!operand.is_value()) return false;
-        const State& s = state(operand.value);
-        return s.uses.back() <= position_;
-    }
-
-    void hold(std::int32_t value, int reg) {
-        State& s = state(value);
-        s.reg = reg;
-        file_of(s).holder[static_cast<std::size_t>(reg)] = value;
-    }
-    void define(std::int32_t value, int reg) {
-        hold(value, reg);
-        unlock();
-    }
-    /// For the result, when the operands have been read: may be the register of one of them.
-    Xbyak::Xmm result_after(const VectorInstruction& step) {
-        release(step);
-        const int r = take();
-        define(step.result, r);
-        return vector(r);
-    }
-    /// For a result that is written before all operands are read.
-    Xbyak::Xmm result_apart(const VectorInstruction& step) {
-        const int r = take();
-        release(step);
-        define(step.result, r);
-        return vector(r);
-    }
-    /// A register with a copy of `from`: its own, where nobody else needs it.
-    Xbyak::Xmm result_over(const VectorInstruction& step, const VectorOperand& operand,
-                           const Xbyak::Xmm& from) {
-        if (dies(operand)) {
-            release(step);
-            define(step.result, from.getIdx());
-            return from;
-        }
-        const int r = take();
-        vmovaps(vector(r), from);
-        release(step);
-        define(step.result, r);
-        return vector(r);
-    }
-
-    Xbyak::Opmask mask(std::int32_t value) {
-        const State& s = state(value);
-        if (s.reg < 0) {
-            hold(value, take(masks_));
-            kmovw(Xbyak::Opmask(s.reg), slot_of(s.slot));
-        }
-        return Xbyak::Opmask(s.reg);
-    }
-    Xbyak::Opmask new_mask(const VectorInstruction& step) {
-        release(step);
-        define(step.result, take(masks_));
-        return Xbyak::Opmask(state(step.result).reg);
-    }
-
-    // --- instructions ----------------------------------------------------------------------------
-
-    static bool commutes(VectorOp op) {
-        return op == VectorOp::add || op == VectorOp::multiply || op == VectorOp::bit_and ||
-               op == VectorOp::bit_or || op == VectorOp::bit_xor || op == VectorOp::integer_add;
-    }
-
-    /// op(result, a, b), b from memory where it is there.
-    template <class F>
-    void binary(const VectorInstruction& step, F op) {
+    /// b from memory where it is there.
+    void write_binary(const VectorInstruction& step, const Binary& binary) {
+        const Encode encode = step.wide ? binary.of_doubles : binary.of_floats;
         VectorOperand a = step.in[0];
         VectorOperand b = step.in[1];
-        if (commutes(step.op) && is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
-        const Xbyak::Xmm ra = in_register(a, step.wide);
+        if (binary.commutes && is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
+        const Register ra = in_register(a, step.wide);
         if (is_in_memory(b)) {
             const Xbyak::Address mb = in_memory(b);
-            op(result_after(step), ra, mb);
+            encode(*this, result_after(step), ra, mb);
         } else {
-            const Xbyak::Xmm rb = in_register(b, step.wide);
-            op(result_after(step), ra, rb);
+            const Register rb = in_register(b, step.wide);
+            encode(*this, result_after(step), ra, rb);
         }
     }
     template <class F>
-    void unary(const VectorInstruction& step, F op) {
+    void write_unary(const VectorInstruction& step, F op) {
         if (is_in_memory(step.in[0])) {
             const Xbyak::Address m = in_memory(step.in[0]);
             op(result_after(step), m);
         } else {
-            const Xbyak::Xmm r = in_register(step.in[0], step.wide);
+            const Register r = in_register(step.in[0], step.wide);
             op(result_after(step), r);
         }
     }
 
-    /// @param over_a  a := a*b + c; `over_c`: c := a*b + c. Of the last operand, memory.
-    template <class A, class B, class C>
-    void fused(const VectorInstruction& step, A over_a, B over_a_c_first, C over_c) {
+    void write_fused(const VectorInstruction& step, const Fused& fused) {
+        const FusedOrders& orders = step.wide ? fused.of_doubles : fused.of_floats;
         VectorOperand a = step.in[0];
         VectorOperand b = step.in[1];
         const VectorOperand c = step.in[2];
         if (is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
-        const Xbyak::Xmm ra = in_register(a, step.wide);
+        const Register ra = in_register(a, step.wide);
         if (is_in_memory(c)) {
             // a := a*b + [c]
-            const Xbyak::Xmm rb = in_register(b, step.wide);
-            if (!is_in_memory(c)) return fused(step, over_a, over_a_c_first, over_c);
+            const Register rb = in_register(b, step.wide);
+            if (!is_in_memory(c)) return write_fused(step, fused);
             const Xbyak::Address mc = in_memory(c);
             if (!dies(a) && dies(b)) {
-                over_a(result_over(step, b, rb), ra, mc);
+                orders.of_213(*this, result_over(step, b, rb), ra, mc);
             } else {
-                over_a(result_over(step, a, ra), rb, mc);
+                orders.of_213(*this, result_over(step, a, ra), rb, mc);
             }
             return;
         }
-        const Xbyak::Xmm rc = in_register(c, step.wide);
+        const Register rc = in_register(c, step.wide);
         if (is_in_memory(b)) {
             const Xbyak::Address mb = in_memory(b);
             if (dies(c) || !dies(a)) {
-                over_c(result_over(step, c, rc), ra, mb);
+                orders.of_231(*this, result_over(step, c, rc), ra, mb);
             } else {
-                over_a_c_first(result_over(step, a, ra), rc, mb);  // a := a*[b] + c
+                orders.of_132(*this, result_over(step, a, ra), rc, mb);  // a := a*[b] + c
             }
             return;
         }
-        const Xbyak::Xmm rb = in_register(b, step.wide);
+        const Register rb = in_register(b, step.wide);
         if (dies(c) || (!dies(a) && !dies(b))) {
-            over_c(result_over(step, c, rc), ra, rb);
+            orders.of_231(*this, result_over(step, c, rc), ra, rb);
         } else if (dies(a)) {
-            over_a(result_over(step, a, ra), rb, rc);
+            orders.of_213(*this, result_over(step, a, ra), rb, rc);
         } else {
-            over_a(result_over(step, b, rb), ra, rc);
+            orders.of_213(*this, result_over(step, b, rb), ra, rc);
         }
     }
 
-    void compare(const VectorInstruction& step, std::uint8_t predicate, std::uint8_t swapped) {
+    void write_comparison(const VectorInstruction& step, const Comparison& comparison) {
+        std::uint8_t predicate = comparison.predicate;
         VectorOperand a = step.in[0];
         VectorOperand b = step.in[1];
         if (is_in_memory(a) && !is_in_memory(b)) {
             std::swap(a, b);
-            predicate = swapped;
+            predicate = comparison.swapped;
         }
-        const Xbyak::Xmm ra = in_register(a, step.wide);
-        const auto write = [&](const Xbyak::Operand& vb) {
-            const auto to = [&](const Xbyak::Xmm& r) {
+        const Register ra = in_register(a, step.wide);
+        const auto write = [&](const Operand& vb) {
+            const auto to = [&](const Register& r) {
                 step.wide ? vcmppd(r, ra, vb, predicate) : vcmpps(r, ra, vb, predicate);
             };
             if (!machine_.has_avx512) return to(result_after(step));
@@ -521,14 +324,13 @@ class Generator : public Xbyak::CodeGenerator {
     }
 
     /// What has half the bits of a vector.
-    [[nodiscard]] Xbyak::Xmm half(const Xbyak::Xmm& r) const {
+    [[nodiscard]] Register half(const Register& r) const {
         return {machine_.has_avx512 ? Xbyak::Operand::YMM : Xbyak::Operand::XMM, r.getIdx()};
     }
-    static Xbyak::Zmm zmm(const Xbyak::Xmm& r) { return Xbyak::Zmm(r.getIdx()); }
 
     void rows(const VectorInstruction& step) {
-        const Xbyak::Xmm r = result_apart(step);
-        const Xbyak::Xmm low(r.getIdx());
+        const Register r = result_apart(step);
+        const Register low(r.getIdx());
         const int quarter = step.immediate / 4;
         const int at_address = distance_to(step.address);
         const auto index_of = [&](int pixel) {
@@ -569,192 +371,210 @@ class Generator : public Xbyak::CodeGenerator {
         vinsertf128(Xbyak::Ymm(r.getIdx()), Xbyak::Ymm(r.getIdx()), row(r11), 1);
     }
 
-    void write(const VectorInstruction& step) {
-        using Z = Xbyak::Xmm;
-        using O = Xbyak::Operand;
+    void write_rounding(const VectorInstruction& step) {
         const bool wide = step.wide;
+        const std::uint8_t mode = step.op == VectorOp::round ? 8 : 9;
+        return write_unary(step, [&](Register r, const Operand& a) {
+            if (machine_.has_avx512) {
+                wide ? vrndscalepd(r, a, mode) : vrndscaleps(r, a, mode);
+            } else {
+                wide ? vroundpd(r, a, mode) : vroundps(r, a, mode);
+            }
+        });
+    }
+
+    void write_shift(const VectorInstruction& step) {
+        const bool wide = step.wide;
+        const Register a = in_register(step.in[0], wide);
+        const Register r = result_after(step);
+        if (step.op == VectorOp::shift_left)
+            return wide ? vpsllq(r, a, step.immediate) : vpslld(r, a, step.immediate);
+        return wide ? vpsrlq(r, a, step.immediate) : vpsrad(r, a, step.immediate);
+    }
+
+    void promote_high(const VectorInstruction& step) {
+        const Register a = in_register(step.in[0], false);
+        const Register r = result_after(step);
+        if (machine_.has_avx512) {
+            vextractf64x4(half(r), zmm(a), 1);
+        } else {
+            vextractf128(half(r), Xbyak::Ymm(a.getIdx()), 1);
+        }
+        return vcvtps2pd(r, half(r));
+    }
+
+    void demote(const VectorInstruction& step) {
+        const Register low = in_register(step.in[0], true);
+        const Register high = in_register(step.in[1], true);
+        const Register upper = half(vector(take()));
+        vcvtpd2ps(upper, high);
+        release(step);
+        lock(upper.getIdx());
+        const Register r = vector(take());
+        vcvtpd2ps(half(r), low);
+        if (machine_.has_avx512) {
+            vinsertf64x4(zmm(r), zmm(r), upper, 1);
+        } else {
+            vinsertf128(Xbyak::Ymm(r.getIdx()), Xbyak::Ymm(r.getIdx()), upper, 1);
+        }
+        return define(step.result, r.getIdx());
+    }
+
+    void write_is_minus(const VectorInstruction& step) {
+        const bool wide = step.wide;
+        const Register a = in_register(step.in[0], wide);
+        if (!machine_.has_avx512) return (void)result_over(step, step.in[0], a);
+        const Xbyak::Opmask k = new_mask(step);
+        return wide ? vpmovq2m(k, a) : vpmovd2m(k, a);
+    }
+
+    void blend(const VectorInstruction& step) {
+        const bool wide = step.wide;
+        const Register no = in_register(step.in[1], wide);
+        const auto write = [&](const Operand& yes) {
+            if (!machine_.has_avx512) {
+                const Register where = in_register({step.mask, kNone}, wide);
+                const Register r = result_after(step);
+                return wide ? vblendvpd(r, no, yes, where) : vblendvps(r, no, yes, where);
+            }
+            const Xbyak::Opmask k = mask(step.mask);
+            const Register r = result_after(step);
+            wide ? vblendmpd(r | k, no, yes) : vblendmps(r | k, no, yes);
+        };
+        if (is_in_memory(step.in[0])) return write(in_memory(step.in[0]));
+        return write(in_register(step.in[0], wide));
+    }
+
+    void zero_unless(const VectorInstruction& step) {
+        const bool wide = step.wide;
+        if (!machine_.has_avx512) {
+            VectorInstruction both = step;
+            both.op = VectorOp::bit_and;
+            both.in[1] = {step.mask, kNone};
+            both.mask = kNone;
+            return write(both);
+        }
+        const Xbyak::Opmask k = mask(step.mask);
+        if (step.in[0].is_constant()) {
+            const Register r = result_after(step);
+            const Xbyak::Address number = ptr[rax + step.in[0].pool];
+            return wide ? vbroadcastsd(zmm(r) | k | Xbyak::util::T_z, number)
+                        : vbroadcastss(r | k | Xbyak::util::T_z, number);
+        }
+        const Register a = in_register(step.in[0], wide);
+        const Register r = result_after(step);
+        return wide ? vmovapd(r | k | Xbyak::util::T_z, a) : vmovaps(r | k | Xbyak::util::T_z, a);
+    }
+
+    void permute_32(const VectorInstruction& step) {
+        const Register index = in_register(step.in[0], false);
+        const Register r = result_apart(step);
+        const int at = distance_to(step.address);
+        vmovaps(r, ptr[r10 + at]);
+        return vpermt2ps(r, index, ptr[r10 + at + 64]);
+    }
+
+    void gather(const VectorInstruction& step) {
+        const bool wide = step.wide;
+        Register index = in_register(step.in[0], false);
+        if (index.getIdx() == kNoIndex) {
+            const Register copy = vector(take());
+            vmovaps(copy, index);
+            index = copy;
+        }
+        const Register all = machine_.has_avx512 ? index : vector(take());
+        const Register r = result_apart(step);
+        const int at = distance_to(step.address);
+        const Xbyak::Address number = ptr[r10 + (wide ? half(index) * 8 : index * 4) + at];
+        vxorpd(r, r, r);
+        if (machine_.has_avx512) {
+            kxnorw(k6, k6, k6);
+            return wide ? vgatherdpd(r | k6, number) : vgatherdps(r | k6, number);
+        }
+        vpcmpeqd(all, all, all);
+        return wide ? vgatherdpd(r, number, all) : vgatherdps(r, number, all);
+    }
+
+    void load_thirds(const VectorInstruction& step) {
+        const int r = result_after(step).getIdx();
+        vmovups(Register(r), third(rsi, step, 0));
+        if (!machine_.has_avx512)
+            return vinsertf128(Xbyak::Ymm(r), Xbyak::Ymm(r), third(rsi, step, 1), 1);
+        for (std::uint8_t i = 1; i < 4; ++i)
+            vinsertf32x4(Xbyak::Zmm(r), Xbyak::Zmm(r), third(rsi, step, i), i);
+    }
+
+    void store_thirds(const VectorInstruction& step) {
+        const int a = in_register(step.in[0], false).getIdx();
+        vmovups(third(rdx, step, 0), Register(a));
+        if (!machine_.has_avx512) {
+            vextractf128(third(rdx, step, 1), Xbyak::Ymm(a), 1);
+        } else {
+            for (std::uint8_t i = 1; i < 4; ++i)
+                vextractf32x4(third(rdx, step, i), Xbyak::Zmm(a), i);
+        }
+        return release(step);
+    }
+
+    void store_colors(const VectorInstruction& step) {
+        const Register a = in_register(step.in[0], false);
+        if (!machine_.has_avx512) {  // the fourth as it was read: masked stores are slow
+            const Register r = dies(step.in[0]) ? a : vector(take());
+            vblendps(r, a, pixels(rdx, step), 0x88);
+            vmovups(pixels(rdx, step), r);
+            return release(step);
+        }
+        vmovups(pixels(rdx, step) | k7, a);
+        return release(step);
+    }
+
+    void write(const VectorInstruction& step) {
+        const bool wide = step.wide;
+        if (const Binary* row = find_row(kBinary, step.op)) return write_binary(step, *row);
+        if (const Fused* row = find_row(kFused, step.op)) return write_fused(step, *row);
+        if (const Comparison* row = find_row(kComparisons, step.op))
+            return write_comparison(step, *row);
         switch (step.op) {
-            case VectorOp::add:
-                return binary(step, [&](auto... x) { wide ? vaddpd(x...) : vaddps(x...); });
-            case VectorOp::subtract:
-                return binary(step, [&](auto... x) { wide ? vsubpd(x...) : vsubps(x...); });
-            case VectorOp::multiply:
-                return binary(step, [&](auto... x) { wide ? vmulpd(x...) : vmulps(x...); });
-            case VectorOp::divide:
-                return binary(step, [&](auto... x) { wide ? vdivpd(x...) : vdivps(x...); });
-            case VectorOp::minimum:
-                return binary(step, [&](auto... x) { wide ? vminpd(x...) : vminps(x...); });
-            case VectorOp::maximum:
-                return binary(step, [&](auto... x) { wide ? vmaxpd(x...) : vmaxps(x...); });
-            case VectorOp::bit_and:
-                return binary(step, [&](auto... x) { wide ? vandpd(x...) : vandps(x...); });
-            case VectorOp::bit_or:
-                return binary(step, [&](auto... x) { wide ? vorpd(x...) : vorps(x...); });
-            case VectorOp::bit_xor:
-                return binary(step, [&](auto... x) { wide ? vxorpd(x...) : vxorps(x...); });
-            case VectorOp::bit_and_not:
-                return binary(step, [&](auto... x) { wide ? vandnpd(x...) : vandnps(x...); });
-            case VectorOp::integer_add:
-                return binary(step, [&](auto... x) { wide ? vpaddq(x...) : vpaddd(x...); });
-            case VectorOp::integer_subtract:
-                return binary(step, [&](auto... x) { wide ? vpsubq(x...) : vpsubd(x...); });
             case VectorOp::to_float:
-                return unary(step, [&](Z r, const O& a) { vcvtdq2ps(r, a); });
-            case VectorOp::multiply_add:
-                return fused(
-                    step, [&](auto... x) { wide ? vfmadd213pd(x...) : vfmadd213ps(x...); },
-                    [&](auto... x) { wide ? vfmadd132pd(x...) : vfmadd132ps(x...); },
-                    [&](auto... x) { wide ? vfmadd231pd(x...) : vfmadd231ps(x...); });
-            case VectorOp::multiply_subtract:
-                return fused(
-                    step, [&](auto... x) { wide ? vfmsub213pd(x...) : vfmsub213ps(x...); },
-                    [&](auto... x) { wide ? vfmsub132pd(x...) : vfmsub132ps(x...); },
-                    [&](auto... x) { wide ? vfmsub231pd(x...) : vfmsub231ps(x...); });
-            case VectorOp::subtract_product:
-                return fused(
-                    step, [&](auto... x) { wide ? vfnmadd213pd(x...) : vfnmadd213ps(x...); },
-                    [&](auto... x) { wide ? vfnmadd132pd(x...) : vfnmadd132ps(x...); },
-                    [&](auto... x) { wide ? vfnmadd231pd(x...) : vfnmadd231ps(x...); });
+                return write_unary(step, [&](Register r, const Operand& a) { vcvtdq2ps(r, a); });
             case VectorOp::square_root:
-                return unary(step, [&](auto... x) { wide ? vsqrtpd(x...) : vsqrtps(x...); });
+                return write_unary(step, [&](auto... x) { wide ? vsqrtpd(x...) : vsqrtps(x...); });
             case VectorOp::round:
-            case VectorOp::floor: {
-                const std::uint8_t mode = step.op == VectorOp::round ? 8 : 9;
-                return unary(step, [&](Z r, const O& a) {
-                    if (machine_.has_avx512) {
-                        wide ? vrndscalepd(r, a, mode) : vrndscaleps(r, a, mode);
-                    } else {
-                        wide ? vroundpd(r, a, mode) : vroundps(r, a, mode);
-                    }
-                });
-            }
+            case VectorOp::floor:
+                return write_rounding(step);
             case VectorOp::shift_right:
-            case VectorOp::shift_left: {
-                const Z a = in_register(step.in[0], wide);
-                const Z r = result_after(step);
-                if (step.op == VectorOp::shift_left)
-                    return wide ? vpsllq(r, a, step.immediate) : vpslld(r, a, step.immediate);
-                return wide ? vpsrlq(r, a, step.immediate) : vpsrad(r, a, step.immediate);
-            }
+            case VectorOp::shift_left:
+                return write_shift(step);
             case VectorOp::promote_low: {
-                const Z a = in_register(step.in[0], false);
+                const Register a = in_register(step.in[0], false);
                 return vcvtps2pd(result_after(step), half(a));
             }
-            case VectorOp::promote_high: {
-                const Z a = in_register(step.in[0], false);
-                const Z r = result_after(step);
-                if (machine_.has_avx512) {
-                    vextractf64x4(half(r), zmm(a), 1);
-                } else {
-                    vextractf128(half(r), Xbyak::Ymm(a.getIdx()), 1);
-                }
-                return vcvtps2pd(r, half(r));
-            }
-            case VectorOp::demote: {
-                const Z low = in_register(step.in[0], true);
-                const Z high = in_register(step.in[1], true);
-                const Z upper = half(vector(take()));
-                vcvtpd2ps(upper, high);
-                release(step);
-                vectors_.is_locked[static_cast<std::size_t>(upper.getIdx())] = true;
-                const Z r = vector(take());
-                vcvtpd2ps(half(r), low);
-                if (machine_.has_avx512) {
-                    vinsertf64x4(zmm(r), zmm(r), upper, 1);
-                } else {
-                    vinsertf128(Xbyak::Ymm(r.getIdx()), Xbyak::Ymm(r.getIdx()), upper, 1);
-                }
-                return define(step.result, r.getIdx());
-            }
-            case VectorOp::equal:
-                return compare(step, kEqual, kEqual);
-            case VectorOp::less:
-                return compare(step, kLess, kGreater);
-            case VectorOp::less_equal:
-                return compare(step, kLessEqual, kGreaterEqual);
-            case VectorOp::greater:
-                return compare(step, kGreater, kLess);
-            case VectorOp::greater_equal:
-                return compare(step, kGreaterEqual, kLessEqual);
-            case VectorOp::is_minus: {
-                const Z a = in_register(step.in[0], wide);
-                if (!machine_.has_avx512) return (void)result_over(step, step.in[0], a);
-                const Xbyak::Opmask k = new_mask(step);
-                return wide ? vpmovq2m(k, a) : vpmovd2m(k, a);
-            }
-            case VectorOp::blend: {
-                const Z no = in_register(step.in[1], wide);
-                const auto write = [&](const O& yes) {
-                    if (!machine_.has_avx512) {
-                        const Z where = in_register({step.mask, kNone}, wide);
-                        const Z r = result_after(step);
-                        return wide ? vblendvpd(r, no, yes, where) : vblendvps(r, no, yes, where);
-                    }
-                    const Xbyak::Opmask k = mask(step.mask);
-                    const Z r = result_after(step);
-                    wide ? vblendmpd(r | k, no, yes) : vblendmps(r | k, no, yes);
-                };
-                if (is_in_memory(step.in[0])) return write(in_memory(step.in[0]));
-                return write(in_register(step.in[0], wide));
-            }
-            case VectorOp::zero_unless: {
-                if (!machine_.has_avx512) {
-                    VectorInstruction both = step;
-                    both.op = VectorOp::bit_and;
-                    both.in[1] = {step.mask, kNone};
-                    both.mask = kNone;
-                    return write(both);
-                }
-                const Xbyak::Opmask k = mask(step.mask);
-                if (step.in[0].is_constant()) {
-                    const Z r = result_after(step);
-                    const Xbyak::Address number = ptr[rax + step.in[0].pool];
-                    return wide ? vbroadcastsd(zmm(r) | k | Xbyak::util::T_z, number)
-                                : vbroadcastss(r | k | Xbyak::util::T_z, number);
-                }
-                const Z a = in_register(step.in[0], wide);
-                const Z r = result_after(step);
-                return wide ? vmovapd(r | k | Xbyak::util::T_z, a)
-                            : vmovaps(r | k | Xbyak::util::T_z, a);
-            }
+            case VectorOp::promote_high:
+                return promote_high(step);
+            case VectorOp::demote:
+                return demote(step);
+            case VectorOp::is_minus:
+                return write_is_minus(step);
+            case VectorOp::blend:
+                return blend(step);
+            case VectorOp::zero_unless:
+                return zero_unless(step);
             case VectorOp::to_index: {
-                const Z a = in_register(step.in[0], wide);
+                const Register a = in_register(step.in[0], wide);
                 if (!wide) return vcvttps2dq(result_after(step), a);
                 return vcvttpd2dq(half(result_after(step)), a);
             }
             case VectorOp::permute_16: {
-                const Z index = in_register(step.in[0], false);
+                const Register index = in_register(step.in[0], false);
                 const int at = distance_to(step.address);
                 return vpermps(zmm(result_after(step)), zmm(index), ptr[r10 + at]);
             }
-            case VectorOp::permute_32: {
-                const Z index = in_register(step.in[0], false);
-                const Z r = result_apart(step);
-                const int at = distance_to(step.address);
-                vmovaps(r, ptr[r10 + at]);
-                return vpermt2ps(r, index, ptr[r10 + at + 64]);
-            }
-            case VectorOp::gather: {
-                Z index = in_register(step.in[0], false);
-                if (index.getIdx() == kNoIndex) {
-                    const Z copy = vector(take());
-                    vmovaps(copy, index);
-                    index = copy;
-                }
-                const Z all = machine_.has_avx512 ? index : vector(take());
-                const Z r = result_apart(step);
-                const int at = distance_to(step.address);
-                const Xbyak::Address number = ptr[r10 + (wide ? half(index) * 8 : index * 4) + at];
-                vxorpd(r, r, r);
-                if (machine_.has_avx512) {
-                    kxnorw(k6, k6, k6);
-                    return wide ? vgatherdpd(r | k6, number) : vgatherdps(r | k6, number);
-                }
-                vpcmpeqd(all, all, all);
-                return wide ? vgatherdpd(r, number, all) : vgatherdps(r, number, all);
-            }
+            case VectorOp::permute_32:
+                return permute_32(step);
+            case VectorOp::gather:
+                return gather(step);
             case VectorOp::spill_index: {
-                const Z a = in_register(step.in[0], false);
+                const Register a = in_register(step.in[0], false);
                 vmovaps(kept_index(step, step.immediate, 0), a);
                 row_index_ = kNone;
                 index_pair_.fill(kNone);
@@ -765,72 +585,41 @@ class Generator : public Xbyak::CodeGenerator {
             case VectorOp::load_plane:
                 return vmovaps(result_after(step), plane(step));
             case VectorOp::store_plane: {
-                const Z a = in_register(step.in[0], wide);
+                const Register a = in_register(step.in[0], wide);
                 vmovaps(plane(step), a);
                 return release(step);
             }
             case VectorOp::load_pixels:
                 return vmovups(result_after(step), pixels(rsi, step));
             case VectorOp::store_pixels: {
-                const Z a = in_register(step.in[0], false);
+                const Register a = in_register(step.in[0], false);
                 vmovups(pixels(rdx, step), a);
                 return release(step);
             }
-            case VectorOp::load_thirds: {
-                const int r = result_after(step).getIdx();
-                vmovups(Xbyak::Xmm(r), third(rsi, step, 0));
-                if (!machine_.has_avx512)
-                    return vinsertf128(Xbyak::Ymm(r), Xbyak::Ymm(r), third(rsi, step, 1), 1);
-                for (std::uint8_t i = 1; i < 4; ++i)
-                    vinsertf32x4(Xbyak::Zmm(r), Xbyak::Zmm(r), third(rsi, step, i), i);
-                return;
-            }
-            case VectorOp::store_thirds: {
-                const int a = in_register(step.in[0], false).getIdx();
-                vmovups(third(rdx, step, 0), Xbyak::Xmm(a));
-                if (!machine_.has_avx512) {
-                    vextractf128(third(rdx, step, 1), Xbyak::Ymm(a), 1);
-                } else {
-                    for (std::uint8_t i = 1; i < 4; ++i)
-                        vextractf32x4(third(rdx, step, i), Xbyak::Zmm(a), i);
-                }
-                return release(step);
-            }
-            case VectorOp::store_colors: {
-                const Z a = in_register(step.in[0], false);
-                if (!machine_.has_avx512) {  // the fourth as it was read: masked stores are slow
-                    const Z r = dies(step.in[0]) ? a : vector(take());
-                    vblendps(r, a, pixels(rdx, step), 0x88);
-                    vmovups(pixels(rdx, step), r);
-                    return release(step);
-                }
-                vmovups(pixels(rdx, step) | k7, a);
-                return release(step);
-            }
+            case VectorOp::load_thirds:
+                return load_thirds(step);
+            case VectorOp::store_thirds:
+                return store_thirds(step);
+            case VectorOp::store_colors:
+                return store_colors(step);
             case VectorOp::shuffle_4: {
-                const Z a = in_register(step.in[0], false);
-                const Z b = in_register(step.in[1], false);
+                const Register a = in_register(step.in[0], false);
+                const Register b = in_register(step.in[1], false);
                 return vshufps(result_after(step), a, b, step.immediate);
             }
+            default:  // a row of a table
+                return;
         }
     }
 
-    VectorMachine machine_;
-    std::vector<State> state_;
-    File vectors_{}, masks_{};
-    std::vector<std::int32_t> kept_;  // constants in the last registers: offsets in the pool
-    std::vector<int> free_slots_, dropped_slots_;
-    int slot_count_ = 0;
     PixelLayout layout_ = PixelLayout::rgb;
     int fetch_ahead_ = 0;  // in bytes
     int claim_ahead_ = 0;
-    std::size_t position_ = 0;
     std::uintptr_t address_ = 0;       // in r10
     int row_index_ = kNone;            // in r9 and r11, of AVX2
     std::array<int, 2> index_pair_{};  // of each block: in r12 and r14, or in r13 and r15
 };
 
-/// The code.
 class Assembled final : public MachineCode {
   public:
     Assembled(VectorProgram program, const VectorMachine& machine)

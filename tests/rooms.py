@@ -13,7 +13,7 @@ LONG = 150  # lines: shorter files may share a test file with their neighbors
 # Folders whose files need no unit test of their name.
 FOLDERS = {
     "cli": "programs: tests/cli runs the command",
-    "plot": "programs: tests/cli runs the command",
+    "plot": "plots: tests/unit/plot draws each kind, tests/cli/test_plot.py looks at the files",
     "tools": "programs: tests/cli runs what maintainers run",
     "plugin": "a module that OpenImageIO loads: tests/parity/clients/test_plugin.py",
     "python": "a module that Python loads: tests/cli/test_python.py",
@@ -24,8 +24,13 @@ FOLDERS = {
 # Files, in the same way.
 FILES = {
     "base/stroke_font": "the strokes of letters, a table: contact_sheet_test reads its letters back",
-    "engine/simd_kernels": "compiled once for each instruction set: simd_test and probe_block_test compare every kernel",
-    "engine/vector_code": "writes machine code: machine_code_test and simd_test compare its bits with the interpreter's",
+    "engine/assemble": "a step of compilation: simd_program_test compares its programs with the reference",
+    "engine/curve_rows": "a form of curves: compiled_curve_test runs all its tests with both",
+    "engine/curve_segments": "a form of curves: compiled_curve_test runs all its tests with both",
+    "engine/machine_registers": "registers of machine code: machine_code_test compares the bits of all operations",
+    "engine/select": "a step of compilation: simd_program_test compares its programs with the reference",
+    "engine/simd_kernels": "compiled once for each instruction set: simd_program_test and probe_block_test compare every kernel",
+    "engine/vector_code": "writes machine code: machine_code_test and simd_program_test compare its bits with the interpreter's",
 }
 DECLARED = re.compile(r"\bTONEWRIGHT_API\s+(?!__attribute__)([^;{]*?)\b(operator\W+|\w+)\s*\(", re.S)
 CLASS = re.compile(r"^\s*(?:class|struct|enum)\b")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Machine code against the interpreter of the same program, which simd_test.cpp holds to the
+// Machine code against the interpreter of the same program, which simd_program_test.cpp holds to the
 // reference: the same bits, for every operator, every layout of pixels and every count.
 #include "engine/machine_code.h"
 

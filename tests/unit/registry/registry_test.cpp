@@ -350,5 +350,31 @@ TEST(Registry, PictureOperatorsIncludeLocalOnes) {
               std::string::npos);
 }
 
+TEST(Resolve, ManyTextsAreOperatorsInTheirOrder) {
+    const std::vector<ResolvedOperator> two = resolve_operators({"reinhard", "hable:white=4"});
+    ASSERT_EQ(two.size(), 2U);
+    EXPECT_EQ(two[0].label, "reinhard");
+    EXPECT_EQ(two[1].params.number("white"), 4);
+    EXPECT_TRUE(resolve_operators({}).empty());
+    EXPECT_EQ(resolve_operators({"hable", "All"}).size(), all_variants().size());
+    EXPECT_THROW((void)resolve_operators({"hable", "reinhardd"}), Error);
+    EXPECT_THROW((void)resolve_operators({local_operators().front().id}), Error);
+    for (const Operator& op : local_operators())
+        EXPECT_THROW(require_no_surroundings(op), Error) << op.id;
+    EXPECT_NO_THROW(require_no_surroundings(find_operator("hable")));
+}
+
+TEST(Resolve, AnOperatorsOwnSettingsTakePrecedenceOverDefaults) {
+    const ResolvedOperator own = resolve_operator("reinhard_extended:white=6");
+    EXPECT_EQ(with_defaults(own, {{"White", "9"}}, "").params.number("white"), 6);
+    const ResolvedOperator plain = resolve_operator("reinhard_extended");
+    EXPECT_EQ(with_defaults(plain, {{"White", "9"}}, "").params.number("white"), 9);
+    EXPECT_EQ(with_defaults(resolve_operator("agx_sobotka"), {}, "golden").params.look(), "golden");
+    EXPECT_EQ(
+        with_defaults(resolve_operator("agx_sobotka:look=punchy"), {}, "golden").params.look(),
+        "punchy");
+    EXPECT_THROW((void)with_defaults(plain, {{"whitte", "9"}}, ""), Error);
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

@@ -392,8 +392,8 @@ def check_config(report, command, operator, config_path):
 def check_refusals(report, command, operator):
     for name, words in [("lin_rec708", "did you mean lin_rec709"), ("cicp:2/2", "input space is cicp:2/2, unspecified / unspecified; expected"),
                         ("cicp:3/1", "cicp:3/1"), ("cicp:9/19", "cicp:9/19"), ("pq:0", "expected pq:WHITE"),
-                        ("hlg:2000", "expected hlg:WHITE"), ("LogC5", "input space is LogC5; expected"),
-                        ("no:such:name", "input space is no:such:name")]:
+                        ("hlg:2000", "expected hlg:WHITE"), ("LogC5", "is LogC5; expected"),
+                        ("no:such:name", "is no:such:name; expected")]:
         run = subprocess.run([command, "eval", operator, "--input", name], input="0 0 0\n", capture_output=True, text=True)
         report.check(f"refused: {name}", run.returncode == 2 and words in run.stderr and run.stderr.count("\n") == 1,
                      f"exit code {run.returncode}, {run.stderr}")

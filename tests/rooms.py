@@ -29,6 +29,8 @@ FILES = {
     "engine/curve_segments": "a form of curves: compiled_curve_test runs all its tests with both",
     "engine/machine_registers": "registers of machine code: machine_code_test compares the bits of all operations",
     "engine/select": "a step of compilation: simd_program_test compares its programs with the reference",
+    "formula/glsl_expressions": "a part of the parser: glsl_test gives it shaders",
+    "formula/glsl_statements": "a part of the parser: glsl_test gives it shaders",
     "engine/simd_kernels": "compiled once for each instruction set: simd_program_test and probe_block_test compare every kernel",
     "engine/vector_code": "writes machine code: machine_code_test and simd_program_test compare its bits with the interpreter's",
 }

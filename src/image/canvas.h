@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tonewright/version.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 
 using Rgb = std::array<float, 3>;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "tonewright/pipeline.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 

@@ -11,9 +11,6 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input();
-constexpr unsigned kMinusZero = 0x8000;
-constexpr unsigned kLargestHalf = 0x7BFF;
-constexpr unsigned kHalfInfinity = 0x7C00;
 
 TEST(WriteClf, HasTheVersionOfOneFormat) {
     // OCIO refuses a file with both.

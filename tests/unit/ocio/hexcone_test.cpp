@@ -106,11 +106,7 @@ Types types_of(const Lowered& lowered) {
     return types;
 }
 
-constexpr auto kMatrixType = Type::matrix;
-constexpr auto kRangeType = Type::range;
-constexpr auto kLut1D = Type::lut_1d;
 constexpr auto kLut3D = Type::lut_3d;
-constexpr auto kFixed = Type::fixed;
 
 void expect_no_cube(const Pipeline& pipeline) {
     const Lowered lowered = lower_to_ocio(pipeline);

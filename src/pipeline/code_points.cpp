@@ -141,10 +141,12 @@ std::optional<SourceColor> color_of_code_points(int primaries, int transfer) {
     const std::string name = name_of(primaries, transfer);
     if (transfer == kLinear && primaries != kXyz) return SourceColor{name, gamut->primaries};
     Pipeline decode;
-    if (curve->decode) decode.push_back(curve_stage(curve->decode(Expr::input())));
     if (transfer == kHlg) {
-        decode = hlg_display_decode(luminance_of(*gamut));
-        decode.insert(decode.begin(), ClampStage{-8, 8});  // as color_of_display() does
+        decode.emplace_back(ClampStage{-8, 8});  // as color_of_display() does
+        const Pipeline hlg = hlg_display_decode(luminance_of(*gamut));
+        decode.insert(decode.end(), hlg.begin(), hlg.end());
+    } else if (curve->decode) {
+        decode.push_back(curve_stage(curve->decode(Expr::input())));
     }
     SourceColor color = primaries == kXyz
                             ? xyz_color(name, std::move(decode))

@@ -12,8 +12,8 @@
 //   - what depends on the processor most: where the numbers of a table are (see there).
 //
 // Coefficients are minimax polynomials (Remez exchange, 50 digits); the error beside each is that
-// of the polynomial alone. tests/unit/engine/simd_program_test.cpp holds the functions to the bounds
-// stated.
+// of the polynomial alone. tests/unit/engine/simd_program_test.cpp holds the functions to the
+// bounds stated.
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

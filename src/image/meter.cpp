@@ -131,8 +131,7 @@ static TonemapOptions tonemap_options(const MeterOptions& options) {
 
 /// Reads the rows once, or twice if alpha must be ignored.
 static SceneMeter measure_rows(PictureReader& reader, const MeterOptions& options,
-                               SceneMeter::Figures figures, int nthreads,
-                               std::size_t batch_bytes) {
+                               SceneMeter::Figures figures, int nthreads, std::size_t batch_bytes) {
     reader.convert_colors(tonemap_options(options));
     const ImageSpec& spec = reader.spec();
     check_pixel_type("source", spec.format);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Machine code against the interpreter of the same program, which simd_program_test.cpp holds to the
-// reference: the same bits, for every operator, every layout of pixels and every count.
+// Machine code against the interpreter of the same program, which simd_program_test.cpp holds to
+// the reference: the same bits, for every operator, every layout of pixels and every count.
 #include "engine/machine_code.h"
 
 #include <gtest/gtest.h>

@@ -49,7 +49,7 @@ void encode(X86& code, const Register& result, const Register& a, const Operand&
 }
 
 /// The instructions of an operation for floats and for doubles.
-struct Binary {
+struct Binary {  // NOLINT(clang-analyzer-optin.performance.Padding): a row reads from left to right
     VectorOp op;
     Encode of_floats, of_doubles;
     bool commutes = false;

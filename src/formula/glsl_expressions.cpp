@@ -211,7 +211,7 @@ void Parser::limit_power(std::string_view name, std::vector<Value>& in) {
 
 const Function& Parser::overload(const Token& at, const std::vector<Value>& in) const {
     const Function* best = nullptr;
-    const Function* any = nullptr;
+    const Function* any = &functions_.front();  // the caller has found one of that name
     std::size_t best_score = 0;
     for (const Function& function : functions_) {
         if (function.name.text != at.text) continue;

@@ -9,6 +9,10 @@ Fences of a page say what their text is:
     (nothing)     text that is not run
 
 In an output, `...` stands for any text, or as a line of its own for any lines.
+
+    /usr/bin/python3 tests/cli/docs_commands.py PAGE build/release/bin/tonewright --record
+
+writes the pictures of a page; `./run artifacts` does.
 """
 
 import argparse
@@ -148,30 +152,37 @@ def is_same(shown, written, folder):
     return shown.exists() and shown.suffix != ".svg" and np.array_equal(*(read_rgb(path, folder) for path in (shown, written)))
 
 
-def main(name, check):
-    """Follows docs/NAME.md; check(report, page, folder, said) tests what only this page has."""
+def check_page(report, name, command, folder, check=None, is_recording=False, is_installed=False):
+    """Follows docs/NAME.md in a folder; check(report, page, folder, said) tests what only this page has."""
+    page = (DOCS / f"{name}.md").read_text()
+    said, lacking = follow(report, page, command.resolve(), folder, is_installed)
+    if report.failed:
+        return
+    for path in re.findall(r"!\[.*?\]\((images/.*?)\)", page):
+        written = next(folder.rglob(Path(path).name), None)
+        if written and is_recording:
+            if not is_same(DOCS / path, written, folder):
+                (DOCS / path).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(written, DOCS / path)
+        elif written:
+            check_picture(report, DOCS / path, written, folder)
+        else:
+            report.check(f"the commands write {path}", lacking)
+    if check and not is_recording:
+        check(report, page, folder, said)
+
+
+def main(name, check=None):
     parser = argparse.ArgumentParser()
     parser.add_argument("command", type=Path)
     parser.add_argument("--record", action="store_true", help="write the pictures of the page")
     parser.add_argument("--installed", action="store_true", help="packages are installed; there is no build")
     arguments = parser.parse_args()
     report = Report()
-    page = (DOCS / f"{name}.md").read_text()
     with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        said, lacking = follow(report, page, arguments.command.resolve(), folder, arguments.installed)
-        if report.failed:
-            return report.finish()
-        for path in re.findall(r"!\[.*?\]\((images/.*?)\)", page):
-            written = next(folder.rglob(Path(path).name), None)
-            if written and arguments.record:
-                if not is_same(DOCS / path, written, folder):
-                    (DOCS / path).parent.mkdir(parents=True, exist_ok=True)
-                    shutil.copy(written, DOCS / path)
-            elif written:
-                check_picture(report, DOCS / path, written, folder)
-            else:
-                report.check(f"the commands write {path}", lacking)
-        if not arguments.record:
-            check(report, page, folder, said)
+        check_page(report, name, arguments.command, Path(scratch), check, arguments.record, arguments.installed)
     return report.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv.pop(1)) if len(sys.argv) > 2 else __doc__)

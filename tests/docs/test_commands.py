@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands in README and docs/ run as they stand there.
 
-    /usr/bin/python3 tests/docs/test_commands.py build/release/bin/tonewright [PAGE...]
+    python3 -m pytest tests/docs/test_commands.py --tonewright build/release/bin/tonewright [-k PAGE]
 
 A page's commands run one after the other in a folder with the files that pages take for granted: render.exr, shot.1001.exr,
 and others (see `Files`). A command of a transcript (`$ `) must print what the page shows; `...` stands for any text. What does
 not run here has a reason in NOT_RUN, and its options must exist. Any other line in a block without a word behind its fence is an
-error: text that is no command has the word `text`. docs_commands.py runs the blocks of `sh` on the pages in FOLLOWED. The last
-line is `N passed, M failed`.
+error: text that is no command has the word `text`. docs_commands.py runs the blocks of `sh` on the pages in FOLLOWED.
 """
 
-import argparse
 import os
 import re
 import shlex
@@ -21,13 +19,11 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-
-TESTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TESTS / folder) for folder in ("cli", "parity", "parity/clients", "../python_check")]
-from docs_commands import DOCS, blocks, missing, output_differs  # noqa: E402
-from operators.defects import OPERATORS as DEFECTS  # noqa: E402
-from pictures import PROJECT, Report  # noqa: E402
-from test_into import ACES  # noqa: E402
+import pytest
+from docs_commands import DOCS, blocks, missing, output_differs
+from operators.defects import OPERATORS as DEFECTS
+from pictures import PROJECT
+from test_into import ACES
 
 PROGRAMS = ("tonewright build/release/bin/tonewright_tools oiiotool ffmpeg ./run export echo python3 cmake ctest npm g++ ssh iinfo idiff maketx iv rv blender "
             "dpkg-buildpackage tests/install/release.sh tests/install/debian.sh").split()
@@ -209,20 +205,24 @@ def check_page(report, path, binary, used):
     return len(found)
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=Path)
-    parser.add_argument("pages", nargs="*", type=Path)
-    arguments = parser.parse_args()
-    report, used = Report(), set()
-    pages = [path.resolve() for path in arguments.pages] or [
-        path for path in (PROJECT / "README.md", *sorted(DOCS.rglob("*.md"))) if path not in GENERATED]
-    count = sum(check_page(report, path, arguments.command.resolve(), used) for path in pages)
-    report.check(f"{count} commands on {len(pages)} pages", count)
-    if not arguments.pages:
-        report.check("every reason in NOT_RUN is needed", used == set(NOT_RUN), sorted(set(NOT_RUN) - used))
-    return report.finish()
+PAGES = [path for path in (PROJECT / "README.md", *sorted(DOCS.rglob("*.md"))) if path not in GENERATED]
+PAGES_WITH_COMMANDS = [path for path in PAGES if list(commands(path.read_text(), str(path.relative_to(PROJECT)) in FOLLOWED))]
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+@pytest.fixture(scope="module")
+def used():
+    """The beginnings in NOT_RUN that a page has; a page adds its name, too."""
+    return set()
+
+
+@pytest.mark.parametrize("path", PAGES_WITH_COMMANDS, ids=lambda path: str(path.relative_to(PROJECT)))
+def test_page(report, command, used, path):
+    report.check(f"{path}: its commands are counted", check_page(report, path, command, used))
+    used.add(path)
+
+
+def test_reasons(report, used):
+    if not used.issuperset(PAGES_WITH_COMMANDS):
+        pytest.skip("the reasons in NOT_RUN are compared with all pages")
+    found = used - set(PAGES)
+    report.check("every reason in NOT_RUN is needed", found == set(NOT_RUN), sorted(set(NOT_RUN) - found))

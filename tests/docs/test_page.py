@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A page of docs/ whose commands, output and pictures are all that there is to test.
+"""Pages of docs/ whose commands, output and pictures are all that there is to test.
 
-    /usr/bin/python3 tests/docs/test_page.py PAGE build/release/bin/tonewright [--record]
-
---record writes the pictures of the page; `./run artifacts` does. The last line is `N passed, M failed`.
+    python3 -m pytest tests/docs/test_page.py --tonewright build/release/bin/tonewright [-k gallery]
 """
-import sys
-from pathlib import Path
+import pytest
+from docs_commands import check_page
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
-from docs_commands import main  # noqa: E402
 
-if __name__ == "__main__":
-    page = sys.argv.pop(1)
-    sys.exit(main(page, lambda *_: None))
+@pytest.mark.parametrize("page", ["formula_to_picture", "gallery"])
+def test_page(report, command, scratch, page):
+    check_page(report, page, command, scratch)

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The documentation site: it builds without a warning, all links and anchors lead somewhere, and no page asks another server.
 
-    /usr/bin/python3 tests/docs/test_site.py build/release/bin/tonewright [--site FOLDER] [--screenshots FOLDER]
+    python3 -m pytest tests/docs/test_site.py --tonewright build/release/bin/tonewright [--site FOLDER] [--screenshots FOLDER]
 
 Without --site, it builds the site first (two minutes). Chromium opens some pages on a screen of a desk and on one of a phone,
 and searches. The spelling of the pages is checked with codespell.
 """
-import argparse
 import functools
 import html.parser
 import http.server
@@ -15,18 +14,16 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import urllib.parse
 from pathlib import Path
 
-TESTS = Path(__file__).resolve().parents[1]
-ROOT = TESTS.parent
-sys.path[:0] = [str(TESTS / folder) for folder in ("parity/clients", "report", "shader")]
-from chromium import Page  # noqa: E402
-from executed import skip  # noqa: E402
-from pictures import Report  # noqa: E402
+import pytest
+from chromium import Page
+from executed import skip
+
+ROOT = Path(__file__).resolve().parents[2]
 
 # Elements and attributes that a browser loads without a click.
 LOADED = {("link", "href"), ("script", "src"), ("img", "src"), ("source", "src"), ("iframe", "src"), ("video", "src"), ("object", "data")}
@@ -67,7 +64,7 @@ def is_remote(address):
     return bool(urllib.parse.urlsplit(address).netloc)
 
 
-def check_links(report, site):
+def test_links(report, site):
     pages = {path: Reader(path.read_text()) for path in sorted(site.rglob("*.html"))}
     broken, remote, links = [], [], 0
     for path, page in pages.items():
@@ -91,10 +88,9 @@ def check_links(report, site):
                    if is_remote(address)]
     report.check(f"{len(pages)} pages: {links} links and anchors lead somewhere", links > len(pages) and not broken, "\n     ".join(broken[:40]))
     report.check("no page loads anything from another server", not remote, "\n     ".join(remote[:40]))
-    return pages
 
 
-def check_contents(report, site, command):
+def test_contents(report, site, command):
     """Every page of docs/ and every operator has a page, which the search finds."""
     listed = json.loads(subprocess.run([command, "list", "--json"], check=True, capture_output=True, text=True).stdout)
     found = {entry["location"].partition("#")[0] for entry in json.loads((site / "search/search_index.json").read_text())["docs"]}
@@ -126,7 +122,8 @@ def go(page, address):
         page.receive(1)
 
 
-def check_browser(report, site, folder):
+def test_browser(request, report, site):
+    folder = request.config.getoption("--screenshots")
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=site))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     root = f"http://127.0.0.1:{server.server_port}/"
@@ -168,14 +165,9 @@ def check_browser(report, site, folder):
     server.shutdown()
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=Path)
-    parser.add_argument("--site", type=Path)
-    parser.add_argument("--screenshots", type=Path)
-    arguments = parser.parse_args()
-    if arguments.screenshots:
-        arguments.screenshots.mkdir(parents=True, exist_ok=True)
+@pytest.fixture(scope="module")
+def site(request, command, tmp_path_factory):
+    """The folder of the site."""
     for tool, package in (("mkdocs", "mkdocs"), ("codespell", "codespell"), ("chromium", "chromium")):
         if not shutil.which(tool):
             skip(f"{tool} is missing (Debian: {package})")
@@ -183,22 +175,15 @@ def main():
     if subprocess.run(["/usr/bin/python3", "-c", "from mkdocs.utils import get_theme_dir; get_theme_dir('material')"],
                       stderr=subprocess.DEVNULL, check=False).returncode:
         skip("the theme is missing (Debian: mkdocs-material)")
-    report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        site = arguments.site or Path(scratch) / "site"
-        if not arguments.site:
-            done = subprocess.run([sys.executable, ROOT / "docs/site/build.py", arguments.command, site], capture_output=True, text=True,
-                                  check=False)
-            if not report.check("mkdocs build --strict", done.returncode == 0, done.stdout + done.stderr):
-                return report.finish()
-        check_links(report, site)
-        check_contents(report, site, arguments.command)
-        check_browser(report, site, arguments.screenshots)
+    if folder := request.config.getoption("--site"):
+        return folder
+    folder = tmp_path_factory.mktemp("site") / "site"
+    done = subprocess.run([sys.executable, ROOT / "docs/site/build.py", command, folder], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, "mkdocs build --strict: " + done.stdout + done.stderr
+    return folder
+
+
+def test_spelling(report, site):
     pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     spelling = subprocess.run(["codespell", "--ignore-words-list", CORRECT_WORDS, *pages], capture_output=True, text=True, check=False)
     report.check(f"spelling of {len(pages)} pages", spelling.returncode == 0 and not spelling.stdout, spelling.stdout)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -144,20 +144,19 @@ def test_browser(request, report, site):
             report.check(f"{len(SHOWN)} pages fit a {screen}'s screen, {width} pixels wide", not wide, "\n     ".join(wide))
         page.resize(*SCREENS["desk"])
         go(page, root + "index.html")
-        # With keys, as people type: with events that a script makes, the theme's search sometimes never began. The last letter is
-        # typed again until the theme has read its index.
-        page.run("document.querySelector('.md-search__input').focus()")
+        # The theme's search never begins in some loads of a page, most often on a busy machine. A person loads it again.
         found = "[...document.querySelectorAll('.md-search-result__link')].some((link) => link.href.includes('operators/hable.html'))"
-        for letter in "uncharte":
-            page.press(letter)
-        end = time.monotonic() + 120  # a busy machine took more than 30
-        while not page.run(found) and time.monotonic() < end:
-            page.press("d")
-            pause = time.monotonic() + 3
-            while not page.run(found) and time.monotonic() < pause:
+        for load in range(10):
+            go(page, root + "index.html")
+            page.run("document.querySelector('.md-search__input').focus()")
+            for letter in "uncharted":
+                page.press(letter)
+            end = time.monotonic() + 10
+            while not page.run(found) and time.monotonic() < end:
                 page.receive(0.2)
-            if not page.run(found):
-                page.press("Backspace")
+            if page.run(found):
+                break
+            print(f"load {load + 1}: {page.run('document.querySelector(`.md-search-result__meta`)?.innerText')}")
         report.check("a search for a word of Hable's title finds its page", page.run(found))
         others = sorted({address for address in page.requests if not address.startswith((root, "about:", "data:", "blob:"))})
         report.check(f"{len(page.requests)} requests of the browser, all of them to this server", page.requests and not others, others)

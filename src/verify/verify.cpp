@@ -480,7 +480,11 @@ VerifyResult measure_all(const VerifyOptions& options,
 
     // Tonewright's shaders do not read a config.
     ShaderRuns shaders;
-    if (options.with_gpu && !is_of_config) shaders = make_shader_runs(options.shaders);
+    if (options.with_gpu && !is_of_config) {
+        shaders = make_shader_runs(options.shaders);
+    } else {
+        (void)languages_to_run(options.shaders);  // wrong names are errors without a run, too
+    }
 
     // Every view on every display, in a minute.
     SampleSetOptions counts = {options.lattice_edge, options.random_count};

@@ -67,8 +67,7 @@ std::unique_ptr<ShaderRun> run_on_opengl_es() {
     return std::make_unique<OpenGlRun>(GlslDialect::es);
 }
 
-ShaderRuns make_shader_runs(const std::vector<std::string>& names) {
-    ShaderRuns made;
+std::vector<std::string> languages_to_run(const std::vector<std::string>& names) {
     std::vector<std::string> ids(kRunners.size());
     std::transform(kRunners.begin(), kRunners.end(), ids.begin(),
                    [](const Runner& runner) { return runner.language; });
@@ -86,20 +85,27 @@ ShaderRuns make_shader_runs(const std::vector<std::string>& names) {
     }
     if (is_none && (is_all || !chosen.empty()))
         throw Error({.parameter = "shaders", .value = "none and more", .expected = "none alone"});
-    if (is_none) return made;
+    return is_all ? ids : chosen;
+}
+
+ShaderRuns make_shader_runs(const std::vector<std::string>& names) {
+    ShaderRuns made;
+    const std::vector<std::string> chosen = languages_to_run(names);
     for (const Runner& runner : kRunners) {
         const ShaderLanguageInfo& language = find_shader_language(runner.language);
-        if (!is_all && std::find(chosen.begin(), chosen.end(), language.id) == chosen.end())
-            continue;
+        if (std::find(chosen.begin(), chosen.end(), language.id) == chosen.end()) continue;
         try {
             made.runs.push_back({language, try_run(runner)});
         } catch (const Error& e) {
             made.not_executed.push_back({language.id, one_line(e.what())});
         }
     }
+    const bool is_all = names.empty() || std::any_of(names.begin(), names.end(), [](const auto& n) {
+                            return is_same_name(n, "all");
+                        });
     if (!is_all) return made;
     for (const ShaderLanguageInfo& language : shader_languages()) {
-        if (std::find(ids.begin(), ids.end(), language.id) == ids.end())
+        if (std::find(chosen.begin(), chosen.end(), language.id) == chosen.end())
             made.not_executed.push_back({language.id, "nothing can run it here"});
     }
     for (const ShaderApplication& application : shader_applications())

@@ -46,7 +46,10 @@ struct ShaderRuns {
     std::vector<Of> runs;
     std::vector<NotExecuted> not_executed;
 };
+/// Ids of the languages that the names choose.
 /// @param names  as VerifyOptions::shaders
+/// @throws Error  unknown names
+[[nodiscard]] std::vector<std::string> languages_to_run(const std::vector<std::string>& names);
 /// @throws Error  unknown names
 [[nodiscard]] ShaderRuns make_shader_runs(const std::vector<std::string>& names);
 

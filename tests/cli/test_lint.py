@@ -18,35 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients
 from pictures import Report  # noqa: E402
 
 # Without a fault: what the lint asks for and nothing else.
-GOOD = """ocio_profile_version: 2.1
-search_path: luts
-strictparsing: true
-environment: {}
-roles: {scene_linear: lin, default: lin, aces_interchange: aces, cie_xyz_d65_interchange: xyz, data: raw,
-        color_picking: sRGB, texture_paint: sRGB, default_byte: sRGB, default_float: lin, default_sequencer: sRGB,
-        compositing_log: lin}
-file_rules:
-  - !<Rule> {name: Default, colorspace: lin}
-displays:
-  sRGB:
-    - !<View> {name: Plain, view_transform: plain, display_colorspace: sRGB}
-    - !<View> {name: Raw, colorspace: raw}
-active_displays: [sRGB]
-active_views: [Plain, Raw]
-inactive_colorspaces: []
-default_view_transform: plain
-view_transforms:
-  - !<ViewTransform>
-    name: plain
-    from_scene_reference: !<RangeTransform> {min_in_value: 0, min_out_value: 0, max_in_value: 1, max_out_value: 1}
-display_colorspaces:
-  - !<ColorSpace> {name: xyz, encoding: display-linear}
-  - !<ColorSpace> {name: sRGB, encoding: sdr-video}
-colorspaces:
-  - !<ColorSpace> {name: lin, aliases: [Linear], encoding: scene-linear}
-  - !<ColorSpace> {name: aces, encoding: scene-linear}
-  - !<ColorSpace> {name: raw, isdata: true, encoding: data}
-"""
+GOOD = (Path(__file__).resolve().parents[1] / "data" / "good_config.ocio").read_text(encoding="utf-8")
 LONG = "n" * 64
 CUBE = "LUT_3D_SIZE 2\n" + "".join(f"{i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8))
 # name -> (what is replaced, by what, level, where, words of what is said)

@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <set>
 
@@ -17,39 +15,13 @@
 #include "tonewright/error.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/lut.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/errors.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class F>
-std::string error_of(const F& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
-
-/// size^3 triplets, red fastest, of f(r, g, b) at the nodes.
-template <class F>
-Lut cube_of(int size, const F& f) {
-    Lut lut;
-    lut.size = size;
-    for (int b = 0; b < size; ++b) {
-        for (int g = 0; g < size; ++g) {
-            for (int r = 0; r < size; ++r) {
-                const double last = size - 1;
-                for (const double y : f(Vector3{r / last, g / last, b / last}))
-                    lut.values.push_back(static_cast<float>(y));
-            }
-        }
-    }
-    return lut;
-}
 
 TEST(WriteText, WritesAndReplaces) {
     const Folder folder;
@@ -195,27 +167,14 @@ TEST(WriteFiles, TheLastFileComesLast) {
     EXPECT_EQ(read(root + "/blocked"), "a file, not a folder");
 }
 
+/// A folder with a pipe in it.
 class Files : public ::testing::Test {
   protected:
-    Files()
-        : folder_(fs::temp_directory_path() / ("tonewright_files." + std::to_string(::getpid()))) {
-        fs::create_directories(folder_);
-        EXPECT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
-    }
-    ~Files() override { fs::remove_all(folder_); }
+    Files() { EXPECT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0); }
 
-    [[nodiscard]] std::string path(const std::string& name) const {
-        return (folder_ / name).string();
-    }
-    void put(const std::string& name, const std::string& text) const {
-        std::ofstream(path(name)) << text;
-    }
-    [[nodiscard]] std::string text_of(const std::string& name) const {
-        std::ifstream file(path(name));
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
 
-    fs::path folder_;
+    Folder folder_;
 };
 
 std::string write_error(const std::string& path) {
@@ -231,7 +190,7 @@ TEST_F(Files, NoDevicePipeOrFolderIsReplaced) {
     const std::string no_file = "is no regular file (a pipe or a device); expected a file";
     EXPECT_EQ(write_error("/dev/null"), "write: /dev/null: " + no_file);
     EXPECT_EQ(write_error(path("pipe")), "write: " + path("pipe") + ": " + no_file);
-    EXPECT_EQ(write_error(folder_.string()), "write: " + folder_.string() + ": is a folder");
+    EXPECT_EQ(write_error(folder_.path()), "write: " + folder_.path() + ": is a folder");
     fs::create_symlink("/dev/null", folder_ / "link");
     EXPECT_EQ(write_error(path("link")), "write: " + path("link") + ": " + no_file);
     struct stat status {};
@@ -247,17 +206,17 @@ TEST_F(Files, TemporaryNamesAreUnique) {
         names.insert(AtomicFile(path("a.txt")).path().string());
     EXPECT_EQ(names.size(), 20U);
 
-    put("victim", "old");
+    write(path("victim"), "old");
     AtomicFile file(path("a.txt"));
     fs::create_symlink(folder_ / "victim", file.path());  // as one who had guessed the name
     EXPECT_EQ(file.create(), -1);
     EXPECT_EQ(errno, EEXIST);
-    EXPECT_EQ(text_of("victim"), "old");
+    EXPECT_EQ(read(path("victim")), "old");
 }
 
 TEST_F(Files, LeftoversOfYesterdayAreRemoved) {
     const auto make = [&](const std::string& name) {
-        put(name, "x");
+        write(path(name), "x");
         fs::last_write_time(path(name), fs::file_time_type::clock::now() - std::chrono::hours(49));
     };
     const std::vector<std::string> left = {".a.b.01234567.1.f.tmp.exr", ".c.01234567.12.ff.tmp.tmp",
@@ -287,19 +246,19 @@ TEST_F(Files, LeftoversOfYesterdayAreRemoved) {
 }
 
 TEST_F(Files, AnOldFileIsReplacedAndLinksStay) {
-    put("old.txt", "old");
+    write(path("old.txt"), "old");
     fs::create_symlink("old.txt", folder_ / "link.txt");
     write_text_atomically(path("link.txt"), "new");
     EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
-    EXPECT_EQ(text_of("old.txt"), "new");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "and the pipe";
+    EXPECT_EQ(read(path("old.txt")), "new");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 3) << "and the pipe";
 }
 
 TEST_F(Files, ATrialOfAFolderLeavesAFileOfThatNameAlone) {
-    put(".tonewright", "mine");
-    require_writable_folder(folder_.string());
-    EXPECT_EQ(text_of(".tonewright"), "mine");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+    write(path(".tonewright"), "mine");
+    require_writable_folder(folder_.path());
+    EXPECT_EQ(read(path(".tonewright")), "mine");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);
 }
 
 std::string read_error(const std::string& path, std::size_t longest = 100) {
@@ -309,11 +268,11 @@ std::string read_error(const std::string& path, std::size_t longest = 100) {
 }
 
 TEST_F(Files, OnlyFilesAreReadAndNothingBlocks) {
-    put("a.txt", "text");
+    write(path("a.txt"), "text");
     EXPECT_EQ(read_file(path("a.txt"), 4, [](const Problem& why) { FAIL() << why.value; }), "text");
     EXPECT_EQ(read_error(path("a.txt"), 3), "it has 4 bytes; expected at most 3");
     EXPECT_EQ(read_error(path("none")), "No such file or directory");
-    EXPECT_EQ(read_error(folder_.string()), "is a folder");
+    EXPECT_EQ(read_error(folder_.path()), "is a folder");
     for (const std::string& name : {path("pipe"), std::string("/dev/zero")}) {
         EXPECT_EQ(read_error(name), "is no regular file (a pipe or a device); expected a file");
         ASSERT_TRUE(why_not_readable(name));

@@ -11,7 +11,7 @@
 
 #include "base/random.h"
 #include "lut/clf.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/hard_floats.h"
 
 namespace tonewright {
 namespace {
@@ -59,25 +59,6 @@ TEST(RoundedUp, IsNeverLessAndLessThanOneUnitMore) {
             ASSERT_NEAR(round_up(x, digits), printed, 1e-12 * x) << shortest(x);
         }
     }
-}
-
-/// Floats that are hard to print: of every size, next to powers of ten, denormal.
-std::vector<float> hard_floats(std::size_t count) {
-    std::vector<float> values = {
-        0,      1,     -1,  0.1F, 1.0F / 3, 16777217.0F, 1e-45F, 1.1754944e-38F, 3.4028235e38F,
-        -65504, 1e-4F, 1e9F};
-    for (int power = -44; power <= 38; ++power) {
-        const auto ten = static_cast<float>(std::pow(10.0, power));
-        values.push_back(std::nextafterf(ten, 0));
-        values.push_back(std::nextafterf(ten, 1e30F));
-    }
-    SampleRandom random(23);
-    while (values.size() < count) {
-        const auto x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
-        if (std::isfinite(x)) values.push_back(x);
-    }
-    values.resize(count);
-    return values;
 }
 
 TEST(Numbers, RoundTripInNineDigitsWithoutExponents) {

@@ -10,6 +10,7 @@
 
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/definition/definitions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -23,12 +24,6 @@ void expect_error(const std::function<void()>& call, const std::string& words) {
         EXPECT_NE(message.find(words), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
-}
-
-std::array<double, 3> shown_by(const Pipeline& pipeline, double r, double g, double b) {
-    const std::array<Expr, 3> rgb = compose(pipeline);
-    const std::array<double, 3> in = {r, g, b};
-    return {evaluate(rgb[0], in), evaluate(rgb[1], in), evaluate(rgb[2], in)};
 }
 
 /// In linear light of Rec.709.

@@ -7,7 +7,7 @@
 #include "tonewright/definition.h"
 #include "tonewright/error.h"
 #include "tonewright/registry.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

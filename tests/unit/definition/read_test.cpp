@@ -4,25 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "tonewright/view.h"
+#include "unit/definition/definitions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-const std::string kHead = "tonewright = 1\nid = \"my\"\n";
-const std::string kStage = "[[stage]]\ncurve = \"max(x, 0)\"\n";
-
-std::shared_ptr<const Operator> parsed(const std::string& rest) {
-    return parse_operator(kHead + rest, "my.tone");
-}
-
-Pipeline built(const Operator& op, const Settings& settings = {}, const std::string& look = {}) {
-    return resolve(op, nullptr, settings, look).build();
-}
 
 TEST(Definition, ReadsTheExampleOfTheDocs) {
     const auto op = load_operator(TONEWRIGHT_TEST_DATA "/../../docs/examples/reinhard_055.tone");

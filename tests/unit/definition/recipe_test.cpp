@@ -1,36 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+
 #include "tonewright/definition.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/definition/definitions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-const std::string kHead = "tonewright = 1\nid = \"my\"\n";
-const std::string kStage = "[[stage]]\ncurve = \"max(x, 0)\"\n";
-
-std::shared_ptr<const Operator> parsed(const std::string& rest) {
-    return parse_operator(kHead + rest, "my.tone");
-}
-
-Pipeline built(const Operator& op, const Settings& settings = {}, const std::string& look = {}) {
-    return resolve(op, nullptr, settings, look).build();
-}
-
-void expect_same(const Pipeline& a, const Pipeline& b, const std::string& what) {
-    const std::array<Expr, 3> x = compose(a);
-    const std::array<Expr, 3> y = compose(b);
-    for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_TRUE(same(x.at(i), y.at(i))) << what << ", channel " << i;
-}
 
 TEST(Definition, OwnCurveIsTheExpressionOfABuiltIn) {
     const auto op = parsed(

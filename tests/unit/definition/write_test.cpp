@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -12,27 +11,10 @@
 
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/definition/definitions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-const std::string kHead = "tonewright = 1\nid = \"my\"\n";
-const std::string kStage = "[[stage]]\ncurve = \"max(x, 0)\"\n";
-
-std::shared_ptr<const Operator> parsed(const std::string& rest) {
-    return parse_operator(kHead + rest, "my.tone");
-}
-
-Pipeline built(const Operator& op, const Settings& settings = {}, const std::string& look = {}) {
-    return resolve(op, nullptr, settings, look).build();
-}
-
-void expect_same(const Pipeline& a, const Pipeline& b, const std::string& what) {
-    const std::array<Expr, 3> x = compose(a);
-    const std::array<Expr, 3> y = compose(b);
-    for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_TRUE(same(x.at(i), y.at(i))) << what << ", channel " << i;
-}
 
 // What the engines get is what a built-in's file gives them, so that it runs at the same speed.
 // TOML's integers end at 2^63, and double precision holds all of them up to 2^53.
@@ -100,35 +82,6 @@ TEST(Definition, EveryBuiltInReadsBackAsTheSameExpression) {
     EXPECT_EQ(refused, kNotPrinted);
     EXPECT_LE(refused.size(), 12U);
     EXPECT_GT(count, 70U);
-}
-
-/// A 3D LUT of two nodes a side that inverts its channels, behind a 1D table that squares 0, 1/2
-/// and 1. A file named "stated" says what goes in and comes out.
-TableFile small_table(const std::string& path) {
-    if (path.find("missing") != std::string::npos) throw FileError("read: " + path + ": gone");
-    std::vector<double> nodes;
-    for (int i = 0; i < 8; ++i) {
-        for (const int place : {i / 4, i / 2 % 2, i % 2})
-            nodes.push_back(1 - place);
-    }
-    const auto table = std::make_shared<const Table>(Table{{0, 0.25, 1}});
-    TableFile file;
-    file.stages = {
-        curve_stage(lookup(table, Expr::input())),
-        LatticeStage{Expr::input(), std::make_shared<const Lattice>(2, [nodes] { return nodes; })}};
-    file.title = "Small";
-    if (path.find("stated") != std::string::npos) {
-        file.encoding = "log2:-10:6.5";
-        file.space = "lin_ap1";
-        file.display = "rec1886";
-    }
-    return file;
-}
-
-std::array<double, 3> shown_by(const Pipeline& pipeline, double r, double g, double b) {
-    const std::array<Expr, 3> rgb = compose(pipeline);
-    const std::array<double, 3> in = {r, g, b};
-    return {evaluate(rgb[0], in), evaluate(rgb[1], in), evaluate(rgb[2], in)};
 }
 
 TEST(LutOperator, IsWrittenAsOneStage) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -14,6 +13,7 @@
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/engine/views.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -68,17 +68,6 @@ Planes run(const ReferenceEngine& engine, const Planes& in) {
     engine.run({in[0].data(), in[1].data(), in[2].data()},
                {out[0].data(), out[1].data(), out[2].data()}, count);
     return out;
-}
-
-std::vector<Pipeline> all_views(const OperatorVariant& variant) {
-    std::vector<Pipeline> views;
-    for (const char* input : {"lin_rec709", "lin_ap1"}) {
-        for (const char* display : {"native", "linear", "srgb", "rec2020"}) {
-            views.push_back(build_view(
-                make_view(resolve_operator(variant.name, {}, variant.look), input, 0.3, display)));
-        }
-    }
-    return views;
 }
 
 TEST(Reference, IsEvaluateBitForBit) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/simd_program.h"
-
 //
 // SimdEngine against ReferenceEngine and the C library, for every instruction set that this machine
 // has. Bounds: 2 units in the last place for the elementary functions, 1e-6 of the code value (its
 // contract) for whole views.
+#include "engine/simd_program.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

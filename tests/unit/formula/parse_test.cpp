@@ -5,18 +5,12 @@
 
 #include <string>
 
+#include "unit/formula/curve_formula.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input(0);
-
-FormulaScope curve_scope() {
-    FormulaScope scope;
-    scope.inputs = {"x"};
-    scope.names.emplace("k", FormulaValue{Expr::uniform("k")});
-    scope.names.emplace("mode.soft", FormulaValue{1});
-    return scope;
-}
 
 double value_at(const std::string& formula, double x) {
     FormulaScope scope;
@@ -24,12 +18,10 @@ double value_at(const std::string& formula, double x) {
     return evaluate(parse_formula(formula, scope), x);
 }
 
-Expr parsed(const std::string& formula) { return parse_formula(formula, curve_scope()); }
-
 /// "2:5: message" of a formula that is wrong.
 std::string error_of(const std::string& formula) {
     try {
-        (void)parsed(formula);
+        (void)parsed_formula(formula);
     } catch (const FormulaError& e) {
         return std::to_string(e.at.line) + ":" + std::to_string(e.at.column) + ": " + e.what();
     }
@@ -122,12 +114,12 @@ TEST(Formula, ReadsReinhardOfIssue2320) {
 }
 
 TEST(Formula, IsTheExpressionThatCodeWrites) {
-    EXPECT_TRUE(same(parsed("x/(x + k)"), kX / (kX + Expr::uniform("k"))));
-    EXPECT_TRUE(same(parsed("k == mode.soft ? x : x*x"),
+    EXPECT_TRUE(same(parsed_formula("x/(x + k)"), kX / (kX + Expr::uniform("k"))));
+    EXPECT_TRUE(same(parsed_formula("k == mode.soft ? x : x*x"),
                      select(equal(Expr::uniform("k"), 1), kX, kX * kX)));
-    EXPECT_TRUE(same(parsed("-0.5*x - 2"), Expr(-0.5) * kX - 2));
-    EXPECT_TRUE(
-        same(parsed("x > 1 && k < x"), select(less(1, kX), less(Expr::uniform("k"), kX), 0)));
+    EXPECT_TRUE(same(parsed_formula("-0.5*x - 2"), Expr(-0.5) * kX - 2));
+    EXPECT_TRUE(same(parsed_formula("x > 1 && k < x"),
+                     select(less(1, kX), less(Expr::uniform("k"), kX), 0)));
 }
 
 TEST(Formula, ErrorsHaveThePosition) {
@@ -217,7 +209,7 @@ TEST(Formula, HasLimits) {
         const std::string before = "a" + std::to_string(i - 1);
         doubling += "a" + std::to_string(i) + " = " + before + "*" + before + "\n";
     }
-    EXPECT_EQ(node_count(std::array{parsed(doubling + "a100")}), 103U);
+    EXPECT_EQ(node_count(std::array{parsed_formula(doubling + "a100")}), 103U);
     std::string many;
     for (int i = 0; i < 2500; ++i) {
         const std::string n = std::to_string(i);

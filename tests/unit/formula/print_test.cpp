@@ -5,20 +5,12 @@
 
 #include <string>
 
+#include "unit/formula/curve_formula.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input(0);
-
-FormulaScope curve_scope() {
-    FormulaScope scope;
-    scope.inputs = {"x"};
-    scope.names.emplace("k", FormulaValue{Expr::uniform("k")});
-    scope.names.emplace("mode.soft", FormulaValue{1});
-    return scope;
-}
-
-Expr parsed(const std::string& formula) { return parse_formula(formula, curve_scope()); }
 
 TEST(Formula, PrintedTextReadsBackTheSame) {
     const char* const formulas[] = {
@@ -46,9 +38,9 @@ TEST(Formula, PrintedTextReadsBackTheSame) {
         "1e-300*x + 1e300 + 0.1"};
     const std::vector<std::string> inputs = {"x"};
     for (const char* formula : formulas) {
-        const Expr e = parsed(formula);
+        const Expr e = parsed_formula(formula);
         const std::string printed = whole_formula(e, inputs);
-        EXPECT_TRUE(same(parsed(printed), e)) << formula << " as " << printed;
+        EXPECT_TRUE(same(parsed_formula(printed), e)) << formula << " as " << printed;
     }
     const Expr shared = sqrt(kX + 1);
     const FormulaText two = formula_text(std::array{shared + 1, shared * shared}, inputs);

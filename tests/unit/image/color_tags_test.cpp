@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <new>
 
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 #include "unit/image/pictures.h"
+#include "unit/image/tonemapped.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -15,8 +15,6 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-
-TonemapOptions hable() { return {.op = resolve_picture_operator("hable")}; }
 
 TEST(Tonemap, ColorSpaceOfTheResult) {
     struct Case {

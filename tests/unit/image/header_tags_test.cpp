@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What files say of their colors, and what writers say of files.
+// What files say of their colors.
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
 
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -18,6 +16,8 @@
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
+#include "unit/folder.h"
+#include "unit/image/picture_files.h"
 #include "unit/image/pictures.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -27,26 +27,6 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-std::string bytes_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Writes a picture, and returns what the writer warned of.
-std::vector<std::string> warnings_of(const ImageBuf& picture, const std::string& path,
-                                     WriteOptions options = {}) {
-    std::vector<std::string> warnings;
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
-    write_image_atomically(picture, path, options);
-    return warnings;
-}
-
-ImageBuf shown_on(const std::string& display, int channels = 3) {
-    const ImageBuf scene =
-        channels == 3 ? make_rgb(24, 17) : make_picture(make_spec(24, 17, {"Y"}, TypeDesc::FLOAT));
-    return tonemap(scene, {.op = resolve_picture_operator("clamp"), .display = display});
-}
-
 std::string icc_of(const std::string& path) {
     const ImageBuf file = read_image(path);
     const OIIO::ParamValue* icc = file.spec().find_attribute("ICCProfile");
@@ -55,8 +35,8 @@ std::string icc_of(const std::string& path) {
 }
 
 TEST(FileTags, PngOfAnHdrDisplayHasItsCodePoints) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("a.png");
+    const Folder folder;
+    const std::string path = folder / "a.png";
     const std::vector<std::pair<std::string, std::string>> displays = {
         {"rec2100_pq", cicp_chunk({9, 16})},
         {"rec2100_hlg", cicp_chunk({9, 18})},
@@ -65,7 +45,7 @@ TEST(FileTags, PngOfAnHdrDisplayHasItsCodePoints) {
         for (const int channels : {1, 3}) {
             const ImageBuf picture = shown_on(display, channels);
             EXPECT_TRUE(warnings_of(picture, path).empty()) << display;
-            const std::string bytes = bytes_of(path);
+            const std::string bytes = read(path);
             EXPECT_EQ(bytes.substr(kAfterPngHeader, chunk.size()), chunk) << display;
             EXPECT_EQ(bytes.substr(12, 4), "IHDR");
             EXPECT_EQ(bytes.find("sRGB"), std::string::npos);
@@ -73,7 +53,7 @@ TEST(FileTags, PngOfAnHdrDisplayHasItsCodePoints) {
             EXPECT_EQ(back.spec().format, TypeDesc::UINT16) << "8 bits show bands";
             EXPECT_LE(OIIO::ImageBufAlgo::compare(picture, back, 1, 1).maxerror, 1.0 / 65535);
             write_image_atomically(picture, path);
-            EXPECT_EQ(bytes_of(path), bytes) << "the same on every run";
+            EXPECT_EQ(read(path), bytes) << "the same on every run";
         }
     }
     EXPECT_EQ(warnings_of(shown_on("rec2100_pq"), path, {.type = TypeDesc::UINT8}),
@@ -82,7 +62,7 @@ TEST(FileTags, PngOfAnHdrDisplayHasItsCodePoints) {
 
 TEST(FileTags, SdrDisplaysHaveTheirProfile) {
     if (!has_icc()) GTEST_SKIP() << "built without Little CMS";
-    const TemporaryFolder folder;
+    const Folder folder;
     const IccCurve srgb = {2.4, true};
     struct Case {
         const char* display;
@@ -98,7 +78,7 @@ TEST(FileTags, SdrDisplaysHaveTheirProfile) {
         for (const int channels : {1, 3}) {
             const ImageBuf picture = shown_on(c.display, channels);
             for (const char* name : {"a.png", "a.jpg", "a.tif"}) {
-                const std::string path = folder.file(name);
+                const std::string path = folder / name;
                 EXPECT_TRUE(warnings_of(picture, path).empty()) << c.display << " " << name;
                 const bool has_chunk =
                     std::string(c.display) == "srgb" && std::string(name) == "a.png";
@@ -106,13 +86,13 @@ TEST(FileTags, SdrDisplaysHaveTheirProfile) {
                     has_chunk ? "" : write_display_icc(c.primaries, c.curve, c.name, channels == 1);
                 EXPECT_TRUE(icc_of(path) == wanted) << c.display << " " << name << " " << channels;
                 if (has_chunk) {
-                    EXPECT_NE(bytes_of(path).find("sRGB"), std::string::npos);
+                    EXPECT_NE(read(path).find("sRGB"), std::string::npos);
                 }
             }
         }
     }
     // A picture that says nothing of its colors gets nothing.
-    const std::string path = folder.file("a.tif");
+    const std::string path = folder / "a.tif";
     write_image_atomically(make_rgb(4, 4), path);
     EXPECT_EQ(icc_of(path), "");
 }

@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -16,6 +14,7 @@
 
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
+#include "unit/image/picture_files.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -25,67 +24,13 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-class ImageFile : public testing::Test {
-  protected:
-    void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() / ("tonewright_file_test_" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-
-    [[nodiscard]] std::string file(const std::string& name) const {
-        return (folder_ / name).string();
-    }
-    [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
-    }
-
-    static std::string bytes_of(const std::string& path) {
-        std::ifstream in(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    static void put(const std::string& path, const std::string& bytes) {
-        std::ofstream(path, std::ios::binary) << bytes;
-    }
-
-    fs::path folder_;
-};
-
-/// Large enough that a file has several blocks; not compressible to nothing.
-ImageBuf make_picture(int channels = 3, TypeDesc type = TypeDesc::FLOAT) {
-    ImageBuf picture(ImageSpec(160, 120, channels, type));
-    OIIO::ImageBufAlgo::noise(picture, "uniform", 0.0F, 1.0F, false, 7);
-    return picture;
-}
-
-template <class Function>
-std::string message_of(Function&& function) {
-    try {
-        function();
-    } catch (const FileError& e) {
-        return e.what();
-    } catch (const std::exception& e) {
-        return std::string("not a FileError: ") + e.what();
-    }
-    return "no error";
-}
-
-void expect_file_error(const std::string& message, const std::string& path,
-                       const std::string& reason) {
-    EXPECT_TRUE(message.starts_with(path + ": cannot ")) << message;
-    EXPECT_NE(message.find(reason), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
+class ImageFile : public PictureFiles {};
 
 /// OpenImageIO 2.4 keeps what a reader reported by its address and thread. A reader that another
 /// thread destroys leaves it behind, for the next reader at that address.
 TEST_F(ImageFile, ErrorsOfOtherReadersAreNotThisOnes) {
-    write_image_atomically(make_picture(3, TypeDesc::UINT8), file("good.sgi"), WriteOptions{});
-    put(file("bad.sgi"), "no picture");
+    write_image_atomically(noise_picture(3, TypeDesc::UINT8), file("good.sgi"), WriteOptions{});
+    write(file("bad.sgi"), "no picture");
     for (int i = 0; i < 50; ++i) {
         std::unique_ptr<OIIO::ImageInput> bad = OIIO::ImageInput::create("sgi");
         ImageSpec spec;
@@ -96,7 +41,7 @@ TEST_F(ImageFile, ErrorsOfOtherReadersAreNotThisOnes) {
 }
 
 TEST_F(ImageFile, RoundTrip) {
-    const ImageBuf picture = make_picture(4);
+    const ImageBuf picture = noise_picture(4);
     for (const char* type : {"half", "float"}) {
         write_image_atomically(picture, file("a.exr"), parse_pixel_type(type));
         const ImageBuf back = read_image(file("a.exr"));
@@ -113,13 +58,13 @@ TEST_F(ImageFile, FolderWithoutPermission) {
     fs::create_directory(file("locked"));
     fs::permissions(file("locked"), fs::perms::owner_read | fs::perms::owner_exec);
     const std::string path = file("locked/a.exr");
-    expect_file_error(message_of([&] { write_image_atomically(make_picture(), path); }), path,
+    expect_file_error(message_of([&] { write_image_atomically(noise_picture(), path); }), path,
                       "Permission denied");
 }
 
 TEST_F(ImageFile, LinksAndPermissionsStay) {
-    const ImageBuf picture = make_picture();
-    put(file("target.png"), "old");
+    const ImageBuf picture = noise_picture();
+    write(file("target.png"), "old");
     fs::permissions(file("target.png"), fs::perms::owner_read | fs::perms::owner_write);
     fs::create_symlink("target.png", file("link.png"));
     write_image_atomically(picture, file("link.png"));
@@ -132,7 +77,7 @@ TEST_F(ImageFile, LinksAndPermissionsStay) {
 
 TEST_F(ImageFile, LongNames) {
     const std::string name = std::string(250, 'n') + ".png";
-    write_image_atomically(make_picture(), file(name));
+    write_image_atomically(noise_picture(), file(name));
     EXPECT_EQ(read_image(file(name)).spec().height, 120);
 }
 

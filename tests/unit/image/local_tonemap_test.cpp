@@ -10,6 +10,7 @@
 #include "tonewright/image_io.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
+#include "unit/folder.h"
 #include "unit/image/pictures.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -142,13 +143,13 @@ TEST_P(LocalPicture, VolumesAreRefused) {
 }
 
 TEST_P(LocalPicture, FilesAreThoseOfTheLibrary) {
-    const TemporaryFolder folder;
+    const Folder folder;
     const ImageBuf source = make_rgb(50, 200, OIIO::TypeDesc::FLOAT, 10);
-    ASSERT_TRUE(source.write(folder.file("in.exr")));
+    ASSERT_TRUE(source.write(folder / "in.exr"));
     const Tonemapper tonemapper(options_of(op(), "srgb"));
     EXPECT_TRUE(tonemapper.needs_whole_picture());
-    tonemap_file(tonemapper, folder.file("in.exr"), folder.file("out.exr"), OIIO::TypeFloat);
-    EXPECT_TRUE(same_bits(read_image(folder.file("out.exr")), [&] {
+    tonemap_file(tonemapper, folder / "in.exr", folder / "out.exr", OIIO::TypeFloat);
+    EXPECT_TRUE(same_bits(read_image(folder / "out.exr"), [&] {
         ImageBuf result;
         EXPECT_TRUE(tonemapper(result, source));
         return result;

@@ -10,8 +10,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "tonewright/engine.h"
 #include "tonewright/tonemap.h"
+#include "unit/folder.h"
 #include "unit/image/pictures.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -450,11 +450,11 @@ TEST(Meter, ARegionAlone) {
     EXPECT_THROW((void)meter(picture, options), Error);
 
     // The same of a file, whose rows are read in batches and in tiles.
-    const TemporaryFolder folder;
+    const Folder folder;
     ImageBuf large = make_picture(make_spec(300, 2000, {"R", "G", "B"}, TypeDesc::FLOAT), 9);
     options.region = ROI(11, 205, 130, 1777, 0, 1);
     for (const bool tiled : {false, true}) {
-        const std::string path = folder.file(tiled ? "tiled.exr" : "rows.exr");
+        const std::string path = folder / (tiled ? "tiled.exr" : "rows.exr");
         if (tiled) large.set_write_tiles(64, 48);
         ASSERT_TRUE(large.write(path)) << large.geterror();
         EXPECT_TRUE(same(meter_file(path, options), meter(large, options)));

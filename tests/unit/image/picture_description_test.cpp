@@ -17,6 +17,7 @@
 #include "image/header_tags.h"
 #include "image/layers.h"
 #include "image/picture_file.h"
+#include "unit/folder.h"
 #include "unit/image/pictures.h"
 
 namespace {
@@ -145,11 +146,11 @@ std::string profile_with_tags(int count, int first) {
 // OpenImageIO 2.4 notes names of tags that it does not know in a static table, while it decodes a
 // profile: without our lock, most runs end in a crash.
 TEST(PictureReader, ThreadsOpenPicturesWithProfiles) {
-    const TemporaryFolder folder;
+    const Folder folder;
     constexpr int kThreads = 4;
     constexpr int kFiles = 40;  // for each thread
     constexpr int kTags = 100;
-    const auto name = [&](int i) { return folder.file(std::to_string(i) + ".tif"); };
+    const auto name = [&](int i) { return folder / (std::to_string(i) + ".tif"); };
     for (int i = 0; i < kThreads * kFiles; ++i) {
         const std::string profile = profile_with_tags(kTags, kTags * i);
         ImageSpec spec = spec_of({"R", "G", "B"}, OIIO::TypeUInt8);

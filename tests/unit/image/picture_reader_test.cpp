@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// What files say of their colors, and what writers say of files.
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -17,6 +13,8 @@
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
+#include "unit/folder.h"
+#include "unit/image/picture_files.h"
 #include "unit/image/pictures.h"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -32,43 +30,39 @@ struct ScopedLeaksOfOthers {
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
+namespace fs = std::filesystem;
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-std::string bytes_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(FileTags, DisplayWindowsOfEmptySpaceAreBounded) {
-    const TemporaryFolder folder;
+    const Folder folder;
     ImageBuf picture = make_rgb(8, 8);
     const auto show_in = [&](int size) {
         picture.specmod().full_width = picture.specmod().full_height = size;
     };
     show_in(1'000'000);
     try {
-        write_image_atomically(picture, folder.file("a.png"));
+        write_image_atomically(picture, folder / "a.png");
         FAIL() << "no error";
     } catch (const FileError& e) {
         EXPECT_NE(std::string(e.what()).find("1000000 x 1000000"), std::string::npos) << e.what();
     }
-    EXPECT_FALSE(std::filesystem::exists(folder.file("a.png")));
-    write_image_atomically(picture, folder.file("a.exr"));  // which has display windows
+    EXPECT_FALSE(fs::exists(folder / "a.png"));
+    write_image_atomically(picture, folder / "a.exr");  // which has display windows
     show_in(20);
     WriteOptions few;
     few.max_pixels = 399;
-    EXPECT_THROW(write_image_atomically(picture, folder.file("a.png"), few), FileError);
+    EXPECT_THROW(write_image_atomically(picture, folder / "a.png", few), FileError);
     few.max_pixels = 400;
-    write_image_atomically(picture, folder.file("a.png"), few);
+    write_image_atomically(picture, folder / "a.png", few);
     // More rows than one batch of black has.
     show_in(3000);
     picture.specmod().full_height = 1000;
     picture.set_origin(0, 600);
     picture.specmod().full_y = 0;
-    write_image_atomically(picture, folder.file("a.png"), TypeDesc::UINT8);
-    const ImageBuf back = read_image(folder.file("a.png"));
+    write_image_atomically(picture, folder / "a.png", TypeDesc::UINT8);
+    const ImageBuf back = read_image(folder / "a.png");
     EXPECT_EQ(back.spec().height, 1000);
     ImageBuf wanted(ImageSpec(3000, 1000, 3, TypeDesc::FLOAT));
     OIIO::ImageBufAlgo::paste(wanted, 0, 0, 0, 0, picture);
@@ -76,8 +70,8 @@ TEST(FileTags, DisplayWindowsOfEmptySpaceAreBounded) {
 }
 
 TEST(FileTags, FilesThatDeclareMoreThanTheyCanHoldAreRefused) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("a.ppm");
+    const Folder folder;
+    const std::string path = folder / "a.ppm";
     std::ofstream(path, std::ios::binary) << "P6 60000 60000 255\n";
     try {
         (void)read_image(path);
@@ -100,7 +94,7 @@ ImageBuf picture_for(const std::string& format) {
 }
 
 TEST(FileTags, EveryFormatThatIsWrittenIsReadAndToneMapped) {
-    const TemporaryFolder folder;
+    const Folder folder;
     std::vector<std::string> formats;
     OIIO::Strutil::split(OIIO::get_string_attribute("output_format_list"), formats, ",");
     std::vector<std::string> extensions;
@@ -113,16 +107,16 @@ TEST(FileTags, EveryFormatThatIsWrittenIsReadAndToneMapped) {
             if (row.starts_with(format + ":"))
                 extension = row.substr(format.size() + 1, row.find(',') - format.size() - 1);
         }
-        const std::string path = folder.file("a." + extension);
-        const std::string out = folder.file("out." + extension);
+        const std::string path = folder / ("a." + extension);
+        const std::string out = folder / ("out." + extension);
         const ImageBuf picture = picture_for(format);
         ASSERT_TRUE(picture.write(path)) << format << ": " << picture.geterror();
         const ImageBuf back = read_image(path);
         EXPECT_EQ(static_cast<int>(back.spec().channelnames.size()), back.nchannels()) << format;
         const Tonemapper tonemapper(
             {.op = resolve_picture_operator("hable"), .input = "lin_rec709"});
-        tonemap_file(tonemapper, path, folder.file("shown.exr"));
-        EXPECT_EQ(read_image(folder.file("shown.exr")).spec().width, 64) << format;
+        tonemap_file(tonemapper, path, folder / "shown.exr");
+        EXPECT_EQ(read_image(folder / "shown.exr").spec().width, 64) << format;
         // The library, with OIIO's own reader.
         const ImageBuf lazy(path);
         EXPECT_FALSE(tonemap(lazy, {.op = resolve_picture_operator("hable"), .input = "lin_rec709"})
@@ -136,15 +130,15 @@ TEST(FileTags, EveryFormatThatIsWrittenIsReadAndToneMapped) {
 }
 
 TEST(FileTags, TruncatedDpxFilesAreErrors) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("a.dpx");
+    const Folder folder;
+    const std::string path = folder / "a.dpx";
     for (const int bits : {8, 10, 12, 16}) {
         for (const char* packing : {"Packed", "Filled, method A", "Filled, method B"}) {
             ImageBuf picture = make_rgb(23, 17, bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16);
             picture.specmod().attribute("oiio:BitsPerSample", bits);
             picture.specmod().attribute("dpx:Packing", packing);
             ASSERT_TRUE(picture.write(path)) << picture.geterror();
-            const std::string whole = bytes_of(path);
+            const std::string whole = read(path);
             EXPECT_NO_THROW((void)read_image(path)) << bits << " " << packing;
             for (const std::size_t lost : {40, 600}) {
                 std::ofstream(path, std::ios::binary) << whole.substr(0, whole.size() - lost);
@@ -154,80 +148,21 @@ TEST(FileTags, TruncatedDpxFilesAreErrors) {
     }
 }
 
-namespace fs = std::filesystem;
-using OIIO::ImageBuf;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
-
-class ReadPicture : public testing::Test {
-  protected:
-    void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() / ("tonewright_file_test_" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-
-    [[nodiscard]] std::string file(const std::string& name) const {
-        return (folder_ / name).string();
-    }
-    [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
-    }
-
-    static std::string bytes_of(const std::string& path) {
-        std::ifstream in(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    static void put(const std::string& path, const std::string& bytes) {
-        std::ofstream(path, std::ios::binary) << bytes;
-    }
-
-    fs::path folder_;
-};
-
-/// Large enough that a file has several blocks; not compressible to nothing.
-ImageBuf make_picture(int channels = 3, TypeDesc type = TypeDesc::FLOAT) {
-    ImageBuf picture(ImageSpec(160, 120, channels, type));
-    OIIO::ImageBufAlgo::noise(picture, "uniform", 0.0F, 1.0F, false, 7);
-    return picture;
-}
-
-template <class Function>
-std::string message_of(Function&& function) {
-    try {
-        function();
-    } catch (const FileError& e) {
-        return e.what();
-    } catch (const std::exception& e) {
-        return std::string("not a FileError: ") + e.what();
-    }
-    return "no error";
-}
-
-void expect_file_error(const std::string& message, const std::string& path,
-                       const std::string& reason) {
-    EXPECT_TRUE(message.starts_with(path + ": cannot ")) << message;
-    EXPECT_NE(message.find(reason), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
+class ReadPicture : public PictureFiles {};
 
 TEST_F(ReadPicture, TruncatedFilesAreErrors) {
     // ImageBuf::read() finds nothing wrong with a truncated TIFF or JPEG file.
-    const ImageBuf picture = make_picture();
+    const ImageBuf picture = noise_picture();
     for (const char* name :
          {"a.exr", "a.hdr", "a.png", "a.tif", "a.jpg", "a.ppm", "a.dpx", "a.tga", "a.sgi"}) {
         const std::string path = file(name);
         const TypeDesc type = std::string(name) == "a.sgi" ? TypeDesc::UINT8 : TypeDesc::UNKNOWN;
         write_image_atomically(picture, path, type);
-        const std::string whole = bytes_of(path);
+        const std::string whole = read(path);
         ASSERT_NO_THROW((void)read_image(path)) << name;
         for (const double part : {0.9, 0.5, 0.1, 0.001}) {
-            put(path, whole.substr(
-                          0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+            write(path, whole.substr(
+                            0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
             // OIIO 2.4's PNG reader loses a string when libpng jumps out of it.
             const ScopedLeaksOfOthers ignored;
             expect_file_error(message_of([&] { (void)read_image(path); }), path, "");
@@ -240,12 +175,12 @@ TEST_F(ReadPicture, RefusesFilesThatAreNotPictures) {
         return message_of([&] { (void)read_image(path); });
     };
     expect_file_error(read(file("missing.exr")), file("missing.exr"), "No such file or directory");
-    expect_file_error(read(folder_.string()), folder_.string(), "is a folder");
-    put(file("empty.exr"), "");
+    expect_file_error(read(folder_.path()), folder_.path(), "is a folder");
+    write(file("empty.exr"), "");
     expect_file_error(read(file("empty.exr")), file("empty.exr"), "the file is empty");
-    put(file("text.exr"), "certainly no picture, and long enough to have a header of some kind");
+    write(file("text.exr"), "certainly no picture, and long enough to have a header of some kind");
     expect_file_error(read(file("text.exr")), file("text.exr"), "");
-    put(file("text.txt"), "certainly no picture");
+    write(file("text.txt"), "certainly no picture");
     expect_file_error(read(file("text.txt")), file("text.txt"), "");
 }
 

@@ -1,58 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// What files say of their colors, and what writers say of files.
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <array>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
-#include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
+#include "unit/folder.h"
+#include "unit/image/picture_files.h"
 #include "unit/image/pictures.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
+namespace fs = std::filesystem;
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-std::string bytes_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// Writes a picture, and returns what the writer warned of.
-std::vector<std::string> warnings_of(const ImageBuf& picture, const std::string& path,
-                                     WriteOptions options = {}) {
-    std::vector<std::string> warnings;
-    options.warn = [&](const std::string& text) { warnings.push_back(text); };
-    write_image_atomically(picture, path, options);
-    return warnings;
-}
-
-ImageBuf shown_on(const std::string& display, int channels = 3) {
-    const ImageBuf scene =
-        channels == 3 ? make_rgb(24, 17) : make_picture(make_spec(24, 17, {"Y"}, TypeDesc::FLOAT));
-    return tonemap(scene, {.op = resolve_picture_operator("clamp"), .display = display});
-}
-
 TEST(FileTags, FormatsWithoutColorTagsWarn) {
-    const TemporaryFolder folder;
+    const Folder folder;
     const auto warning = [&](const char* display, const char* name) {
-        const std::vector<std::string> all = warnings_of(shown_on(display), folder.file(name));
+        const std::vector<std::string> all = warnings_of(shown_on(display), folder / name);
         EXPECT_LE(all.size(), 1U);
         return all.empty() ? std::string() : all[0];
     };
@@ -75,32 +53,29 @@ TEST(FileTags, FormatsWithoutColorTagsWarn) {
     EXPECT_EQ(warning("rec2100_pq", "a.exr"),
               "most applications read OpenEXR as linear light, but the file holds code values of "
               "Rec.2100-PQ; for linear light, use <<display=linear>>");
-    EXPECT_EQ(warnings_of(shown_on("srgb"), folder.file("a.jpg"), {.type = TypeDesc::UINT16}),
+    EXPECT_EQ(warnings_of(shown_on("srgb"), folder / "a.jpg", {.type = TypeDesc::UINT16}),
               std::vector<std::string>{"pixels are 8 bits, not 16 bits"});
 }
 
 TEST(FileTags, AWarningThatThrowsLeavesNothing) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("a.jpg");
+    const Folder folder;
+    const std::string path = folder / "a.jpg";
     WriteOptions options;
     options.warn = [](const std::string& text) { throw std::runtime_error(text); };
     EXPECT_THROW(write_image_atomically(shown_on("rec2100_pq"), path, options), std::runtime_error);
-    EXPECT_FALSE(std::filesystem::exists(path));
-    EXPECT_EQ(
-        std::distance(
-            std::filesystem::directory_iterator(std::filesystem::path(path).parent_path()), {}),
-        0);
+    EXPECT_FALSE(fs::exists(path));
+    EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(path).parent_path()), {}), 0);
 }
 
 TEST(FileTags, AvifThatHoldsHevcIsAWarning) {
     if (!OIIO::ImageOutput::create("a.avif")) GTEST_SKIP() << "OpenImageIO without HEIF";
-    const TemporaryFolder folder;
-    const std::string path = folder.file("a.avif");
+    const Folder folder;
+    const std::string path = folder / "a.avif";
     const std::vector<std::string> warnings = warnings_of(shown_on("srgb"), path);
     // ISO/IEC 23000-22: AV1 has the brand avif, HEVC has heic.
-    const bool is_avif = bytes_of(path).substr(8, 4) == "avif";
+    const bool is_avif = read(path).substr(8, 4) == "avif";
     EXPECT_EQ(warnings.size(), is_avif ? 0U : 1U);
-    EXPECT_TRUE(warnings_of(shown_on("srgb"), folder.file("a.heic")).empty());
+    EXPECT_TRUE(warnings_of(shown_on("srgb"), folder / "a.heic").empty());
 }
 
 ImageBuf with_alpha(float alpha) {
@@ -110,27 +85,27 @@ ImageBuf with_alpha(float alpha) {
 }
 
 TEST(FileTags, AlphaThatIsZeroEverywhereIsAWarning) {
-    const TemporaryFolder folder;
+    const Folder folder;
     ImageBuf blank = with_alpha(0);
     for (const char* name : {"a.png", "a.tif"}) {
-        const std::vector<std::string> warnings = warnings_of(blank, folder.file(name));
+        const std::vector<std::string> warnings = warnings_of(blank, folder / name);
         ASSERT_EQ(warnings.size(), 1U) << name;
         EXPECT_TRUE(warnings[0].starts_with("alpha is 0 everywhere")) << warnings[0];
     }
-    EXPECT_TRUE(warnings_of(blank, folder.file("a.jpg")).empty()) << "it has no alpha";
-    EXPECT_TRUE(warnings_of(blank, folder.file("a.exr")).empty()) << "light without cover";
+    EXPECT_TRUE(warnings_of(blank, folder / "a.jpg").empty()) << "it has no alpha";
+    EXPECT_TRUE(warnings_of(blank, folder / "a.exr").empty()) << "light without cover";
     OIIO::ImageBufAlgo::fill(blank, {0.0F, 0.0F, 0.0F, 0.0F});
     set(blank, 5, 4, {0.002F, 0.004F, 0.006F, 0.01F});
-    EXPECT_TRUE(warnings_of(blank, folder.file("a.png")).empty());
+    EXPECT_TRUE(warnings_of(blank, folder / "a.png").empty());
 }
 
 TEST(FileTags, AlphaIsLeftOutOrMadeOpaque) {
-    const TemporaryFolder folder;
+    const Folder folder;
     using Alpha = WriteOptions::Alpha;
     for (const float alpha : {0.0F, 0.5F}) {
         const ImageBuf picture = with_alpha(alpha);
         for (const char* name : {"a.png", "a.tif", "a.exr"}) {
-            const std::string path = folder.file(name);
+            const std::string path = folder / name;
             EXPECT_TRUE(warnings_of(picture, path, {.alpha = Alpha::ignore}).empty());
             ImageBuf back = read_image(path);
             EXPECT_EQ(back.nchannels(), 3) << name;
@@ -145,16 +120,15 @@ TEST(FileTags, AlphaIsLeftOutOrMadeOpaque) {
 }
 
 TEST(FileTags, CompressionIsThatOfTheFormat) {
-    const TemporaryFolder folder;
+    const Folder folder;
     const ImageBuf picture = make_rgb(64, 64, TypeDesc::HALF);
     for (const char* name : {"none", "zip", "piz", "dwaa"}) {
-        write_image_atomically(picture, folder.file("a.exr"), {.compression = name});
-        EXPECT_EQ(read_image(folder.file("a.exr")).spec().get_string_attribute("compression"),
-                  name);
+        write_image_atomically(picture, folder / "a.exr", {.compression = name});
+        EXPECT_EQ(read_image(folder / "a.exr").spec().get_string_attribute("compression"), name);
     }
     const auto size_of = [&](const char* name, const WriteOptions& options) {
-        write_image_atomically(picture, folder.file(name), options);
-        return bytes_of(folder.file(name)).size();
+        write_image_atomically(picture, folder / name, options);
+        return read(folder / name).size();
     };
     EXPECT_LT(size_of("a.jpg", {.quality = 20}), size_of("a.jpg", {.quality = 95}));
     EXPECT_LT(size_of("a.jpg", {.compression = "jpeg:20"}),
@@ -163,7 +137,7 @@ TEST(FileTags, CompressionIsThatOfTheFormat) {
               size_of("a.exr", {.compression = "dwaa:5"}));
     const auto refusal = [&](const char* name, const WriteOptions& options) {
         try {
-            write_image_atomically(picture, folder.file(name), options);
+            write_image_atomically(picture, folder / name, options);
         } catch (const Error& e) {
             return std::string(e.what());
         }
@@ -175,72 +149,13 @@ TEST(FileTags, CompressionIsThatOfTheFormat) {
     EXPECT_NE(refusal("b.exr", {.quality = 50}).find("dwaa"), std::string::npos);
     EXPECT_NE(refusal("b.jpg", {.quality = 101}).find("[1, 100]"), std::string::npos);
     EXPECT_NE(refusal("b.jpg", {.compression = "jpeg:x"}).find("quality"), std::string::npos);
-    EXPECT_FALSE(std::filesystem::exists(folder.file("b.exr")));
+    EXPECT_FALSE(fs::exists(folder / "b.exr"));
 }
 
-namespace fs = std::filesystem;
-using OIIO::ImageBuf;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
-
-class WrittenPicture : public testing::Test {
-  protected:
-    void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() / ("tonewright_file_test_" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-
-    [[nodiscard]] std::string file(const std::string& name) const {
-        return (folder_ / name).string();
-    }
-    [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
-    }
-
-    static std::string bytes_of(const std::string& path) {
-        std::ifstream in(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    static void put(const std::string& path, const std::string& bytes) {
-        std::ofstream(path, std::ios::binary) << bytes;
-    }
-
-    fs::path folder_;
-};
-
-/// Large enough that a file has several blocks; not compressible to nothing.
-ImageBuf make_picture(int channels = 3, TypeDesc type = TypeDesc::FLOAT) {
-    ImageBuf picture(ImageSpec(160, 120, channels, type));
-    OIIO::ImageBufAlgo::noise(picture, "uniform", 0.0F, 1.0F, false, 7);
-    return picture;
-}
-
-template <class Function>
-std::string message_of(Function&& function) {
-    try {
-        function();
-    } catch (const FileError& e) {
-        return e.what();
-    } catch (const std::exception& e) {
-        return std::string("not a FileError: ") + e.what();
-    }
-    return "no error";
-}
-
-void expect_file_error(const std::string& message, const std::string& path,
-                       const std::string& reason) {
-    EXPECT_TRUE(message.starts_with(path + ": cannot ")) << message;
-    EXPECT_NE(message.find(reason), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
+class WrittenPicture : public PictureFiles {};
 
 TEST_F(WrittenPicture, TypeOfTheFormatOrTheRequestedOne) {
-    const ImageBuf picture = make_picture();
+    const ImageBuf picture = noise_picture();
     write_image_atomically(picture, file("a.png"));
     EXPECT_EQ(read_image(file("a.png")).spec().format, TypeDesc::UINT8);
     write_image_atomically(picture, file("a.png"), TypeDesc::UINT16);
@@ -260,7 +175,7 @@ TEST_F(WrittenPicture, TypeOfTheFormatOrTheRequestedOne) {
 
 TEST_F(WrittenPicture, FormatsWithoutProxies) {
     // SGI cannot be written to memory by OIIO 2.4: the other way through the code.
-    const ImageBuf picture = make_picture(3, TypeDesc::UINT8);
+    const ImageBuf picture = noise_picture(3, TypeDesc::UINT8);
     write_image_atomically(picture, file("a.sgi"));
     EXPECT_EQ(OIIO::ImageBufAlgo::compare(picture, read_image(file("a.sgi")), 0, 0).maxerror, 0);
     EXPECT_EQ(files(), 1U);
@@ -370,14 +285,14 @@ TEST_F(WrittenPicture, PngHasColorThatIsNotMultiplied) {
 }
 
 TEST_F(WrittenPicture, FailedWriteLeavesTheOldFile) {
-    const ImageBuf picture = make_picture();
+    const ImageBuf picture = noise_picture();
     std::signal(SIGXFSZ, SIG_IGN);
     for (const char* name : {"a.exr", "a.png", "a.jpg", "a.tif", "a.hdr", "a.sgi"}) {
         const std::string path = file(name);
         const TypeDesc type = std::string(name) == "a.sgi" ? TypeDesc::UINT8 : TypeDesc::UNKNOWN;
         write_image_atomically(picture, path, type);
-        const std::size_t size = bytes_of(path).size();
-        put(path, "the old file");
+        const std::size_t size = read(path).size();
+        write(path, "the old file");
         rlimit old{};
         ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old), 0);
         // A full disk, at the middle of the file and at its last byte.
@@ -389,7 +304,7 @@ TEST_F(WrittenPicture, FailedWriteLeavesTheOldFile) {
                 message_of([&] { write_image_atomically(picture, path, type); });
             ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old), 0);
             expect_file_error(message, path, "");
-            EXPECT_EQ(bytes_of(path), "the old file") << name;
+            EXPECT_EQ(read(path), "the old file") << name;
             EXPECT_EQ(files(), 1U) << name;
         }
         fs::remove(path);
@@ -398,27 +313,27 @@ TEST_F(WrittenPicture, FailedWriteLeavesTheOldFile) {
 }
 
 TEST_F(WrittenPicture, FailedEncodingLeavesTheOldFile) {
-    put(file("a.png"), "the old file");
+    write(file("a.png"), "the old file");
     expect_file_error(message_of([&] { write_image_atomically(ImageBuf(), file("a.png")); }),
                       file("a.png"), "there is no picture");
-    EXPECT_EQ(bytes_of(file("a.png")), "the old file");
+    EXPECT_EQ(read(file("a.png")), "the old file");
     EXPECT_EQ(files(), 1U);
 }
 
 TEST_F(WrittenPicture, RefusesPathsThatCannotBeWritten) {
-    const ImageBuf picture = make_picture();
-    const auto write = [&](const std::string& path) {
+    const ImageBuf picture = noise_picture();
+    const auto error = [&](const std::string& path) {
         return message_of([&] { write_image_atomically(picture, path); });
     };
-    expect_file_error(write(file("missing/a.exr")), file("missing/a.exr"),
+    expect_file_error(error(file("missing/a.exr")), file("missing/a.exr"),
                       "No such file or directory");
-    put(file("plain"), "x");
-    expect_file_error(write(file("plain/a.exr")), file("plain/a.exr"), "Not a directory");
+    write(file("plain"), "x");
+    expect_file_error(error(file("plain/a.exr")), file("plain/a.exr"), "Not a directory");
     fs::create_directory(file("folder.exr"));
-    expect_file_error(write(file("folder.exr")), file("folder.exr"), "is a folder");
-    expect_file_error(write(file("a.xyz")), file("a.xyz"), "xyz");
-    expect_file_error(write(file("noextension")), file("noextension"), "no extension");
-    expect_file_error(write("/dev/null"), "/dev/null", "is no regular file");
+    expect_file_error(error(file("folder.exr")), file("folder.exr"), "is a folder");
+    expect_file_error(error(file("a.xyz")), file("a.xyz"), "xyz");
+    expect_file_error(error(file("noextension")), file("noextension"), "no extension");
+    expect_file_error(error("/dev/null"), "/dev/null", "is no regular file");
 }
 
 }  // namespace

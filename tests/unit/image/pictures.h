@@ -4,7 +4,6 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagecache.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdint>
 #include <cstring>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "tonewright/version.h"
+#include "unit/folder.h"
 #include "unit/noise.h"
 
 /// Small pictures for tests.
@@ -74,27 +74,5 @@ inline bool same_bits(const OIIO::ImageBuf& a, const OIIO::ImageBuf& b) {
     return a.spec().format == b.spec().format && a.roi() == b.roi() &&
            std::memcmp(a.localpixels(), b.localpixels(), a.spec().image_bytes()) == 0;
 }
-
-/// A folder of its own for a test's files.
-class TemporaryFolder {
-  public:
-    TemporaryFolder()
-        : path_(std::filesystem::temp_directory_path() /
-                ("tonewright_test_" + std::to_string(::getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    [[nodiscard]] std::string file(const std::string& name) const {
-        return (path_ / name).string();
-    }
-
-  private:
-    std::filesystem::path path_;
-};
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/png_chunks.h"
 
-//
-// What files say of their colors, and what writers say of files.
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "unit/image/pictures.h"
-
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-using OIIO::ImageBuf;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
 
 TEST(PngChunks, HaveLengthTypeDataAndChecksum) {
     // The last chunk of every PNG file.

@@ -10,6 +10,7 @@
 
 #include "image/picture_description.h"
 #include "image/picture_file.h"
+#include "unit/folder.h"
 #include "unit/image/pictures.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -73,8 +74,8 @@ TEST(Resize, LightKeepsItsColor) {
 }
 
 TEST(Resize, RowsAreThoseOfTheWholePicture) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("in.exr");
+    const Folder folder;
+    const std::string path = folder / "in.exr";
     ASSERT_TRUE(make_rgb(90, 70, OIIO::TypeDesc::HALF, 3).write(path));
     ReadOptions read;
     read.resize = "33x50";
@@ -96,8 +97,8 @@ TEST(Resize, RowsAreThoseOfTheWholePicture) {
 }
 
 TEST(Resize, LightAboveTheOperatorsWhiteHasNoNegativeLobes) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("lamp.exr");
+    const Folder folder;
+    const std::string path = folder / "lamp.exr";
     OIIO::ImageBuf lamp(make_spec(32, 32, {"R", "G", "B"}, OIIO::TypeDesc::FLOAT));
     OIIO::ImageBufAlgo::fill(lamp, {0.0F, 0.0F, 0.0F});
     set(lamp, 15, 15, {64, 64, 64});

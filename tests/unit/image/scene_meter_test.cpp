@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tonewright/tonemap.h"
+#include "unit/folder.h"
 #include "unit/image/pictures.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -207,8 +208,8 @@ TEST(SceneStatistics, AnyPixelType) {
 }
 
 TEST(SceneStatistics, CachedAndTiledPictures) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("tiled.exr");
+    const Folder folder;
+    const std::string path = folder / "tiled.exr";
     ImageSpec spec = make_spec(150, 90, {"R", "G", "B", "A", "Z"}, TypeDesc::HALF);
     spec.x = -7;
     spec.y = 11;
@@ -296,8 +297,8 @@ TEST(SceneStatistics, ErrorsAreThrown) {
     EXPECT_EQ(error_of(ImageBuf(deep)),
               "source is deep; expected flat pixels (oiiotool --flatten)");
 
-    const TemporaryFolder folder;
-    const std::string path = folder.file("cut.exr");
+    const Folder folder;
+    const std::string path = folder / "cut.exr";
     write_truncated(path);
     EXPECT_NE(error_of(ImageBuf(path)).find("cut.exr"), std::string::npos);
 }

@@ -7,14 +7,13 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <fstream>
-#include <iterator>
 #include <set>
 
 #include "image/picture_file.h"
 #include "tonewright/image_io.h"
 #include "tonewright/tonemap.h"
+#include "unit/folder.h"
 #include "unit/image/pictures.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -24,11 +23,6 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using OIIO::TypeDesc;
 
-std::string bytes_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 class Sequence : public testing::Test {
   protected:
     /// Writes pictures, an hour ago.
@@ -37,7 +31,7 @@ class Sequence : public testing::Test {
         for (int i = 0; i < count; ++i) {
             const std::string number = std::to_string(i);
             frames.push_back(
-                {folder_.file("in." + number + ".exr"), folder_.file("out." + number + extension)});
+                {folder_ / ("in." + number + ".exr"), folder_ / ("out." + number + extension)});
             write_image_atomically(make_rgb(40, 30, TypeDesc::HALF, 1.0F + static_cast<float>(i)),
                                    frames.back().in);
             fs::last_write_time(frames.back().in, fs::file_time_type::clock::now() - 1h);
@@ -69,12 +63,12 @@ class Sequence : public testing::Test {
     }
     [[nodiscard]] std::set<std::string> names() const {
         std::set<std::string> result;
-        for (const auto& entry : fs::directory_iterator(fs::path(folder_.file("a")).parent_path()))
+        for (const auto& entry : fs::directory_iterator(folder_.path()))
             result.insert(entry.path().filename());
         return result;
     }
 
-    TemporaryFolder folder_;
+    Folder folder_;
 };
 
 TEST_F(Sequence, OneFrameThatFailsDoesNotStopTheOthers) {
@@ -117,7 +111,7 @@ TEST_F(Sequence, SkipsCompleteNewerFramesOfTheSameSizeAndType) {
         EXPECT_EQ(skipped(frames, TypeDesc::UINT8), all) << extension;
         EXPECT_EQ(skipped(frames, TypeDesc::UINT8, "drago"), all) << "it cannot know";
 
-        const std::string whole = bytes_of(frames[0].out);
+        const std::string whole = read(frames[0].out);
         std::ofstream(frames[0].out, std::ios::binary) << whole.substr(0, whole.size() * 3 / 4);
         std::ofstream(frames[1].out, std::ios::binary) << "";
         fs::last_write_time(frames[2].out, fs::last_write_time(frames[2].in));  // as old
@@ -125,7 +119,7 @@ TEST_F(Sequence, SkipsCompleteNewerFramesOfTheSameSizeAndType) {
         fs::remove(frames[4].out);
         EXPECT_EQ(skipped(frames, TypeDesc::UINT8), std::vector<int>{5}) << extension;
         // OIIO 2.4 leaves bytes of an SGI file's header to chance.
-        EXPECT_TRUE(bytes_of(frames[0].out) == whole || extension == ".sgi") << extension;
+        EXPECT_TRUE(read(frames[0].out) == whole || extension == ".sgi") << extension;
         EXPECT_EQ(skipped(frames, TypeDesc::UINT8), all) << extension;
         fs::last_write_time(frames[1].in, fs::file_time_type::clock::now() + 1min);
         EXPECT_EQ(skipped(frames, TypeDesc::UINT8), (std::vector<int>{0, 2, 3, 4, 5}));
@@ -156,7 +150,7 @@ TEST_F(Sequence, TheSameBytesAgainWithoutADate) {
     for (const std::string extension : {".exr", ".tif", ".dpx"}) {
         std::vector<FrameFiles> frames = make_frames(1, extension);
         OIIO::ImageBuf dateless = make_rgb(40, 30, TypeDesc::HALF);
-        const std::string hdr = folder_.file("in.hdr");  // holds no date
+        const std::string hdr = folder_ / "in.hdr";  // holds no date
         write_image_atomically(dateless, hdr, TypeDesc::FLOAT);
         ASSERT_EQ(read_image(hdr).spec().find_attribute("DateTime"), nullptr);
         // 2001-09-09 01:46:40 UTC is a thousand million seconds after 1970.
@@ -206,11 +200,11 @@ TEST_F(Sequence, LeftoversOfKilledRunsAreRemoved) {
     std::set<std::string> expected = {"in.0.exr", "in.1.exr", "out.0.png", "out.1.png"};
     for (const auto& some : {stay, go, old}) {
         for (const std::string& name : some) {
-            if (name != own) std::ofstream(folder_.file(name)) << "x";
+            if (name != own) std::ofstream(folder_ / name) << "x";
         }
     }
     for (const std::string& name : old)
-        fs::last_write_time(folder_.file(name), fs::file_time_type::clock::now() - 25h);
+        fs::last_write_time(folder_ / name, fs::file_time_type::clock::now() - 25h);
     expected.insert(stay.begin(), stay.end());
     tonemap_files(Tonemapper({.op = resolve_picture_operator("hable")}), frames);
     EXPECT_EQ(names(), expected);
@@ -224,7 +218,7 @@ TEST_F(Sequence, FilesThatMayNotBeWrittenStay) {
     tonemap_files(Tonemapper({.op = resolve_picture_operator("hable")}), frames);
     ASSERT_TRUE(frames[0].problem);
     EXPECT_EQ(render(*frames[0].problem), frames[0].out + ": cannot write: Permission denied");
-    EXPECT_EQ(bytes_of(frames[0].out), "old");
+    EXPECT_EQ(read(frames[0].out), "old");
 }
 
 }  // namespace

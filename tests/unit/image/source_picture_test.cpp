@@ -4,15 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <new>
 #include <string>
 #include <vector>
 
-#include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 #include "unit/image/pictures.h"
+#include "unit/image/tonemapped.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -21,27 +20,6 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::ROI;
 using OIIO::TypeDesc;
-
-// The SIMD engine's bound against the reference in encoded values is 1e-6 (engine.h); one more for
-// float operands on the way (division by alpha).
-constexpr double kTolerance = 2e-6;
-
-TonemapOptions hable() { return {.op = resolve_picture_operator("hable")}; }
-
-ReferenceEngine reference(const TonemapOptions& o) {
-    // The pictures here say nothing of their color.
-    const std::string input = o.input == kAutoInput ? "lin_rec709" : o.input;
-    return ReferenceEngine(build_view(make_view(o.op, input, o.exposure_stops, o.display)));
-}
-
-void expect_error(ImageBuf& dst, bool ok, const std::string& part) {
-    EXPECT_FALSE(ok);
-    ASSERT_TRUE(dst.has_error());
-    const std::string message = dst.geterror();
-    EXPECT_NE(message.find(part), std::string::npos) << message;
-    EXPECT_TRUE(message.starts_with("tonemap: ")) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
 
 TEST(Tonemap, AlphaMayBeAnyLaterChannel) {
     ImageBuf src(make_spec(1, 1, {"R", "G", "B", "Z", "A"}, TypeDesc::HALF));

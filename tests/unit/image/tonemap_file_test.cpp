@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <array>
 #include <csignal>
 #include <fstream>
@@ -17,6 +16,7 @@
 #include "image/tonemap_file.h"
 #include "tonewright/image_io.h"
 #include "tonewright/tonemap.h"
+#include "unit/folder.h"
 #include "unit/image/pictures.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -36,11 +36,6 @@ WriteOptions written_as(TypeDesc type) {
     WriteOptions options;
     options.type = type;
     return options;
-}
-
-std::string bytes_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 ImageSpec spec_of(const std::vector<std::string>& channels, TypeDesc type = TypeDesc::HALF) {
@@ -63,20 +58,20 @@ class TonemapFile : public testing::Test {
     void expect_same(const std::string& in, const std::string& out, const TonemapOptions& options,
                      TypeDesc type = OIIO::TypeUnknown) {
         const ImageBuf source = read_image(in);
-        const std::string whole = folder_.file("whole_" + out);
+        const std::string whole = folder_ / ("whole_" + out);
         write_image_atomically(tonemap(source, options), whole, type);
-        const std::string wanted = bytes_of(whole);
+        const std::string wanted = read(whole);
         ASSERT_GT(wanted.size(), 100U);
         for (const int threads : {1, 3}) {
-            const std::string path = folder_.file(out);
+            const std::string path = folder_ / out;
             tonemap_in_batches(Tonemapper(options), in, path, written_as(type), {}, threads,
                                kSmallBatch);
-            EXPECT_TRUE(bytes_of(path) == wanted) << in << " -> " << out << ", " << threads;
+            EXPECT_TRUE(read(path) == wanted) << in << " -> " << out << ", " << threads;
             fs::remove(path);
         }
     }
 
-    TemporaryFolder folder_;
+    Folder folder_;
 };
 
 TEST_F(TonemapFile, BatchesAreSomeSixteenMegabytesOfWholeTiles) {
@@ -90,7 +85,7 @@ TEST_F(TonemapFile, BatchesAreSomeSixteenMegabytesOfWholeTiles) {
 }
 
 TEST_F(TonemapFile, EqualsTheWholePicture) {
-    const std::string in = folder_.file("a.exr");
+    const std::string in = folder_ / "a.exr";
     put(spec_of({"R", "G", "B"}), in);
     const TonemapOptions options = {.op = resolve_picture_operator("hable")};
     expect_same(in, "half.exr", options, TypeDesc::HALF);
@@ -105,7 +100,7 @@ TEST_F(TonemapFile, TilesAlphaAndOtherChannels) {
     ImageSpec spec = spec_of({"R", "G", "B", "A", "Z"}, TypeDesc::FLOAT);
     spec.tile_width = 64;
     spec.tile_height = 48;
-    const std::string in = folder_.file("a.exr");
+    const std::string in = folder_ / "a.exr";
     put(spec, in, 1);
     const TonemapOptions options = {.op = resolve_picture_operator("reinhard")};
     expect_same(in, "half.exr", options, TypeDesc::HALF);
@@ -114,7 +109,7 @@ TEST_F(TonemapFile, TilesAlphaAndOtherChannels) {
 
 TEST_F(TonemapFile, TexturesBecomePictures) {
     for (const char* kind : {"Plain Texture", "LatLong Environment"}) {
-        const std::string in = folder_.file("a.exr");
+        const std::string in = folder_ / "a.exr";
         OIIO::ImageSpec config;
         config.set_format(TypeDesc::HALF);
         ASSERT_TRUE(OIIO::ImageBufAlgo::make_texture(
@@ -122,14 +117,14 @@ TEST_F(TonemapFile, TexturesBecomePictures) {
             make_rgb(64, 32, TypeDesc::HALF, 4), in, config))
             << OIIO::geterror();
         expect_same(in, "half.exr", {.op = resolve_picture_operator("hable")}, TypeDesc::HALF);
-        const std::string out = folder_.file("out.exr");
+        const std::string out = folder_ / "out.exr";
         tonemap_file(Tonemapper({.op = resolve_picture_operator("hable")}), in, out);
         EXPECT_EQ(read_image(out).spec().width, 64) << "all of it is in the file";
     }
 }
 
 TEST_F(TonemapFile, AnySubimage) {
-    const std::string in = folder_.file("pages.tif");
+    const std::string in = folder_ / "pages.tif";
     const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(in);
     const std::array pages = {make_rgb(20, 10), make_rgb(30, 15, TypeDesc::FLOAT, 5)};
     ASSERT_TRUE(file->open(in, pages[0].spec()));
@@ -137,7 +132,7 @@ TEST_F(TonemapFile, AnySubimage) {
     ASSERT_TRUE(file->open(in, pages[1].spec(), OIIO::ImageOutput::AppendSubimage));
     ASSERT_TRUE(pages[1].write(file.get()));
     ASSERT_TRUE(file->close());
-    const std::string out = folder_.file("page.exr");
+    const std::string out = folder_ / "page.exr";
     // Also of an operator that measures its picture.
     for (const char* op : {"hable", "drago"}) {
         for (int page = 0; page < 2; ++page) {
@@ -156,7 +151,7 @@ TEST_F(TonemapFile, AnySubimage) {
 TEST_F(TonemapFile, RowsInFilesThatBeginAtTheBottom) {
     ImageSpec spec = spec_of({"R", "G", "B"});
     spec.attribute("openexr:lineOrder", "decreasingY");
-    const std::string in = folder_.file("a.exr");
+    const std::string in = folder_ / "a.exr";
     put(spec, in);
     expect_same(in, "half.exr", {.op = resolve_picture_operator("hable")}, TypeDesc::HALF);
     expect_same(in, "a.png", {.op = resolve_picture_operator("hable")}, TypeDesc::UINT8);
@@ -169,7 +164,7 @@ TEST_F(TonemapFile, DisplayWindowsBeyondAndInsideThePicture) {
         spec.y = offset;
         spec.full_width = kWidth + offset;
         spec.full_height = kHeight + 3 * offset;
-        const std::string in = folder_.file("a.exr");
+        const std::string in = folder_ / "a.exr";
         put(spec, in);
         expect_same(in, "half.exr", {.op = resolve_picture_operator("hable")}, TypeDesc::HALF);
         expect_same(in, "a.png", {.op = resolve_picture_operator("hable")}, TypeDesc::UINT8);
@@ -178,13 +173,13 @@ TEST_F(TonemapFile, DisplayWindowsBeyondAndInsideThePicture) {
     ImageSpec spec = spec_of({"R", "G", "B"});
     spec.y = 1000;
     spec.full_height = 100;
-    const std::string in = folder_.file("b.exr");
+    const std::string in = folder_ / "b.exr";
     put(spec, in);
     expect_same(in, "a.png", {.op = resolve_picture_operator("hable")}, TypeDesc::UINT8);
 }
 
 TEST_F(TonemapFile, StatisticsAreOfTheWholePicture) {
-    const std::string in = folder_.file("a.exr");
+    const std::string in = folder_ / "a.exr";
     put(spec_of({"R", "G", "B"}), in, 50);
     expect_same(in, "out.exr", {.op = resolve_picture_operator("drago")});
     // Alpha that was never written: pixels count without it.
@@ -195,27 +190,27 @@ TEST_F(TonemapFile, StatisticsAreOfTheWholePicture) {
 }
 
 TEST_F(TonemapFile, GrayStaysGrayOrBecomesColor) {
-    const std::string in = folder_.file("a.exr");
+    const std::string in = folder_ / "a.exr";
     put(spec_of({"Y"}, TypeDesc::FLOAT), in);
     const ImageSpec spec = read_image(in).spec();
     ASSERT_EQ(spec.nchannels, 1);
     for (const char* op : {"hable", "false_color"}) {
-        const std::string out = folder_.file("out.exr"), whole = folder_.file("whole.exr");
+        const std::string out = folder_ / "out.exr", whole = folder_ / "whole.exr";
         tonemap_in_batches(Tonemapper({.op = resolve_picture_operator(op)}), in, out,
                            written_as(TypeDesc::HALF), {}, 2, kSmallBatch);
         write_image_atomically(tonemap(read_image(in), {.op = resolve_picture_operator(op)}), whole,
                                TypeDesc::HALF);
-        EXPECT_TRUE(bytes_of(out) == bytes_of(whole)) << op;
+        EXPECT_TRUE(read(out) == read(whole)) << op;
     }
 }
 
 TEST_F(TonemapFile, OntoItself) {
-    const std::string in = folder_.file("a.exr"), out = folder_.file("b.exr");
+    const std::string in = folder_ / "a.exr", out = folder_ / "b.exr";
     put(spec_of({"R", "G", "B"}), in);
     tonemap_file(Tonemapper({.op = resolve_picture_operator("hable")}), in, out, TypeDesc::HALF);
     tonemap_in_batches(Tonemapper({.op = resolve_picture_operator("hable")}), in, in,
                        written_as(TypeDesc::HALF), {}, 3, kSmallBatch);
-    EXPECT_TRUE(bytes_of(in) == bytes_of(out));
+    EXPECT_TRUE(read(in) == read(out));
 }
 
 std::string message_of(const std::function<void()>& function) {
@@ -230,9 +225,9 @@ std::string message_of(const std::function<void()>& function) {
 }
 
 TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
-    const std::string in = folder_.file("a.exr"), out = folder_.file("out.exr");
+    const std::string in = folder_ / "a.exr", out = folder_ / "out.exr";
     put(spec_of({"R", "G", "B"}), in);
-    const std::string whole = bytes_of(in);
+    const std::string whole = read(in);
     std::ofstream(out) << "the old file";
     const auto run = [&](int threads) {
         return message_of([&] {
@@ -241,7 +236,7 @@ TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
         });
     };
     const auto expect_old = [&] {
-        EXPECT_EQ(bytes_of(out), "the old file");
+        EXPECT_EQ(read(out), "the old file");
         EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(out).parent_path()), {}), 2);
     };
     // In the first, a middle and the last batches, with others on their way.
@@ -270,11 +265,11 @@ TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
 }
 
 TEST_F(TonemapFile, PicturesThatCannotBeToneMappedAreNamed) {
-    const std::string in = folder_.file("a.exr");
+    const std::string in = folder_ / "a.exr";
     put(spec_of({"X", "Y"}), in);
     const std::string message = message_of([&] {
         tonemap_file(Tonemapper({.op = resolve_picture_operator("hable")}), in,
-                     folder_.file("out.exr"));
+                     folder_ / "out.exr");
     });
     EXPECT_TRUE(message.starts_with("file: " + in + ": ")) << message;
     EXPECT_NE(message.find("2 channels (X, Y)"), std::string::npos) << message;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tonewright/tonemap.h"
 
-#include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagecache.h>
 #include <gtest/gtest.h>
@@ -26,7 +25,9 @@
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/folder.h"
 #include "unit/image/pictures.h"
+#include "unit/image/tonemapped.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -36,27 +37,6 @@ using OIIO::ImageSpec;
 using OIIO::ROI;
 using OIIO::TypeDesc;
 using Unpremult = TonemapOptions::Unpremult;
-
-// The SIMD engine's bound against the reference in encoded values is 1e-6 (engine.h); one more for
-// float operands on the way (division by alpha).
-constexpr double kTolerance = 2e-6;
-
-TonemapOptions hable() { return {.op = resolve_picture_operator("hable")}; }
-
-ReferenceEngine reference(const TonemapOptions& o) {
-    // The pictures here say nothing of their color.
-    const std::string input = o.input == kAutoInput ? "lin_rec709" : o.input;
-    return ReferenceEngine(build_view(make_view(o.op, input, o.exposure_stops, o.display)));
-}
-
-void expect_error(ImageBuf& dst, bool ok, const std::string& part) {
-    EXPECT_FALSE(ok);
-    ASSERT_TRUE(dst.has_error());
-    const std::string message = dst.geterror();
-    EXPECT_NE(message.find(part), std::string::npos) << message;
-    EXPECT_TRUE(message.starts_with("tonemap: ")) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
 
 TEST(Tonemap, EqualsTheReferenceEngine) {
     const float inf = std::numeric_limits<float>::infinity();
@@ -505,10 +485,10 @@ TEST(Tonemap, OutsideItsDataWindowTheSourceIsBlack) {
         spec.x = 2;
         spec.y = 3;
         ImageBuf src = make_picture(spec);
-        const TemporaryFolder folder;
+        const Folder folder;
         if (cached) {
-            ASSERT_TRUE(src.write(folder.file("window.exr")));
-            src.reset(folder.file("window.exr"), 0, 0, OIIO::ImageCache::create());
+            ASSERT_TRUE(src.write(folder / "window.exr"));
+            src.reset(folder / "window.exr", 0, 0, OIIO::ImageCache::create());
             src.init_spec(src.name(), 0, 0);
             ASSERT_TRUE(src.cachedpixels());
         }
@@ -766,8 +746,8 @@ TEST(Tonemap, DeepPicturesAreRefused) {
 }
 
 TEST(Tonemap, CachedAndTiledSources) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("tiled.exr");
+    const Folder folder;
+    const std::string path = folder / "tiled.exr";
     ImageBuf local = make_picture(make_spec(150, 90, {"R", "G", "B", "A", "Z"}, TypeDesc::HALF), 5);
     local.set_write_tiles(32, 32);
     ASSERT_TRUE(local.write(path)) << local.geterror();
@@ -784,13 +764,12 @@ TEST(Tonemap, CachedAndTiledSources) {
 }
 
 TEST(Tonemap, TruncatedSourceIsAnError) {
-    const TemporaryFolder folder;
+    const Folder folder;
     for (const bool is_cached : {false, true}) {
         // The cache of OpenImageIO 2.4 reports the error of a file once.
         const std::string name = is_cached ? "cached_cut.exr" : "cut.exr";
-        write_truncated(folder.file(name));
-        const ImageBuf cut =
-            is_cached ? cached_picture(folder.file(name)) : ImageBuf(folder.file(name));
+        write_truncated(folder / name);
+        const ImageBuf cut = is_cached ? cached_picture(folder / name) : ImageBuf(folder / name);
         ImageBuf dst;
         expect_error(dst, tonemap(dst, cut, hable()), name);
     }
@@ -855,8 +834,8 @@ TEST(Tonemap, WhatAFunctionThrowsIsAnError) {
 }
 
 TEST(Tonemap, AnySubimageAndLevel) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("mip.exr");
+    const Folder folder;
+    const std::string path = folder / "mip.exr";
     const ImageBuf top = make_rgb(64, 64, TypeDesc::HALF, 4);
     OIIO::ImageSpec config;
     config.set_format(TypeDesc::HALF);

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "unit/lut/lut_cases.h"
-
-namespace fs = std::filesystem;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

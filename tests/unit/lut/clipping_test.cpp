@@ -4,11 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "unit/lut/lut_cases.h"
-
-namespace fs = std::filesystem;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

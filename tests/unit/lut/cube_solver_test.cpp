@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "base/random.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

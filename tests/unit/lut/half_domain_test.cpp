@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "base/atomic_file.h"
@@ -13,9 +12,6 @@
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 #include "tonewright/registry.h"
-#include "unit/lut/lut_cases.h"
-
-namespace fs = std::filesystem;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

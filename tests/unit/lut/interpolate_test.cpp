@@ -5,26 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "base/random.h"
 #include "unit/lut/lut_cases.h"
 
-namespace fs = std::filesystem;
-
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-template <class F>
-std::string error_of(const F& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
 
 /// size^3 triplets, red fastest, of f(r, g, b) at the nodes.
 template <class F>

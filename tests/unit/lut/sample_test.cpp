@@ -5,43 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "unit/errors.h"
 #include "unit/lut/lut_cases.h"
-
-namespace fs = std::filesystem;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-template <class F>
-std::string error_of(const F& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
-
-/// size^3 triplets, red fastest, of f(r, g, b) at the nodes.
-template <class F>
-Lut cube_of(int size, const F& f) {
-    Lut lut;
-    lut.size = size;
-    for (int b = 0; b < size; ++b) {
-        for (int g = 0; g < size; ++g) {
-            for (int r = 0; r < size; ++r) {
-                const double last = size - 1;
-                for (const double y : f(Vector3{r / last, g / last, b / last}))
-                    lut.values.push_back(static_cast<float>(y));
-            }
-        }
-    }
-    return lut;
-}
 
 TEST(SampleLut, NodesAreValuesOfTheView) {
     // A Rec.709 view of `clamp` on a log2 encoding, by hand: light 0.18 * 2^(16.5 n - 10), limited

@@ -9,7 +9,7 @@
 
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

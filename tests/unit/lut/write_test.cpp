@@ -5,30 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
 #include <set>
 #include <sstream>
 
-#include "base/random.h"
+#include "unit/errors.h"
+#include "unit/hard_floats.h"
 #include "unit/lut/lut_cases.h"
-
-namespace fs = std::filesystem;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-template <class F>
-std::string error_of(const F& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
 
 TEST(LutFormatName, RoundTrips) {
     EXPECT_EQ(parse_lut_format("cube"), LutFormat::cube);
@@ -42,42 +27,6 @@ TEST(LutFormatName, RoundTrips) {
     EXPECT_EQ(error_of([] { (void)parse_lut_format("cub"); }),
               "format is cub; expected cube, clf, ctf, spi1d, spi3d, csp, resolve_cube, 3dl, "
               "lut, icc, hald, strip, strip_up or raw; did you mean cube?");
-}
-
-/// size^3 triplets, red fastest, of f(r, g, b) at the nodes.
-template <class F>
-Lut cube_of(int size, const F& f) {
-    Lut lut;
-    lut.size = size;
-    for (int b = 0; b < size; ++b) {
-        for (int g = 0; g < size; ++g) {
-            for (int r = 0; r < size; ++r) {
-                const double last = size - 1;
-                for (const double y : f(Vector3{r / last, g / last, b / last}))
-                    lut.values.push_back(static_cast<float>(y));
-            }
-        }
-    }
-    return lut;
-}
-
-/// Floats that are hard to print: of every size, next to powers of ten, denormal.
-std::vector<float> hard_floats(std::size_t count) {
-    std::vector<float> values = {
-        0,      1,     -1,  0.1F, 1.0F / 3, 16777217.0F, 1e-45F, 1.1754944e-38F, 3.4028235e38F,
-        -65504, 1e-4F, 1e9F};
-    for (int power = -44; power <= 38; ++power) {
-        const auto ten = static_cast<float>(std::pow(10.0, power));
-        values.push_back(std::nextafterf(ten, 0));
-        values.push_back(std::nextafterf(ten, 1e30F));
-    }
-    SampleRandom random(23);
-    while (values.size() < count) {
-        const auto x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
-        if (std::isfinite(x)) values.push_back(x);
-    }
-    values.resize(count);
-    return values;
 }
 
 /// A .cube file by the specification (Adobe, Cube LUT 1.0): keywords, then lines of three numbers.

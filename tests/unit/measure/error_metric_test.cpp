@@ -12,7 +12,6 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-const Expr kX = Expr::input(0);
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Summary, OfKnownErrors) {

@@ -17,7 +17,6 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-const Expr kX = Expr::input(0);
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t count_of(const SampleSet& set, SampleKind kind) {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tonewright/error.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -2,7 +2,6 @@
 #include <OpenColorIO/OpenColorIO.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -8,7 +8,7 @@
 #include "tonewright/error.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

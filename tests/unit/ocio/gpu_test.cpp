@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/random.h"
 #include "full_counts.h"
@@ -13,6 +12,7 @@
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
+#include "unit/shader/hostile_colors.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -193,27 +193,11 @@ TEST(ShaderGpu, ArraysAndTexturesHoldTheSameNumbers) {
     }
 }
 
-// The hostile colors of tests/unit/shader/, through a compiler of shaders.
+// Through a compiler of shaders.
 TEST(ShaderGpu, HostileColorsGiveFiniteNumbers) {
     if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty())
         GTEST_SKIP() << reason;
-    constexpr float kInf = std::numeric_limits<float>::infinity();
-    const std::vector<float> values = {0.0F,    -0.0F,   1e-45F, 1e-38F, 1e-30F, 1e-10F,
-                                       0.18F,   1.0F,    16.3F,  65504,  1e30F,  kInf,
-                                       -1e-45F, -1e-10F, -0.2F,  -65504, -1e30F, -kInf};
-    std::vector<float> rgb;
-    for (const float r : values) {
-        for (const float g : values) {
-            for (const float b : values)
-                rgb.insert(rgb.end(), {r, g, b});
-        }
-    }
-    SampleRandom random(3);
-    const std::size_t count = count_of(1'000'000U, 20'000U);
-    while (rgb.size() < 3 * count) {
-        const auto x = static_cast<float>(std::exp2(random.uniform(-149, 127)));
-        rgb.push_back(random.uniform(0, 1) < 0.3 ? -x : x);
-    }
+    const std::vector<float> rgb = hostile_colors(count_of(1'000'000U, 20'000U));
     std::vector<float> out(rgb.size());
     for (const OperatorVariant& variant : tested_variants()) {
         for (const char* display : {"linear", "srgb"}) {

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "tonewright/error.h"
 #include "tonewright/lut_file.h"
+#include "unit/folder.h"
 #include "unit/lut/lut_cases.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -6,17 +6,17 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 #include <gtest/gtest.h>
-#include <stdlib.h>  // mkdtemp(), setenv()
-#include <utility>
+#include <stdlib.h>  // setenv()
 
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tonewright/error.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -54,9 +54,6 @@ float factor_in_application(const std::string& path) {
 class LutFileBesideOcio : public testing::Test {
   protected:
     void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "tonewright-test-XXXXXX").string();
-        ASSERT_TRUE(::mkdtemp(pattern.data()));
-        folder_ = pattern;
         fs::create_directory(folder_ / "tmp");
         if (const char* value = ::getenv("TMPDIR")) saved_ = value;
         ::setenv("TMPDIR", (folder_ / "tmp").c_str(), 1);
@@ -67,25 +64,24 @@ class LutFileBesideOcio : public testing::Test {
         } else {
             ::setenv("TMPDIR", saved_.c_str(), 1);
         }
-        fs::remove_all(folder_);
     }
-    std::string write(const std::string& name, const std::string& text) const {
-        const fs::path path = folder_ / name;
-        std::ofstream(path) << text;
-        return path.string();
+    /// The path of a file with this text.
+    [[nodiscard]] std::string written(const std::string& name, const std::string& text) const {
+        write(folder_ / name, text);
+        return folder_ / name;
     }
     [[nodiscard]] bool leaves_nothing() const { return fs::is_empty(folder_ / "tmp"); }
 
-    fs::path folder_;
+    Folder folder_;
     std::string saved_;
 };
 
 TEST_F(LutFileBesideOcio, ReadsARewrittenFileAgainAndKeepsTheCachesOfTheApplication) {
-    const std::string path = write("a.clf", clf(2));
+    const std::string path = written("a.clf", clf(2));
     EXPECT_EQ(factor_in_application(path), 2);
     EXPECT_EQ(factor_of(LutFile(path)), 2);
     for (const int factor : {3, 4, 3}) {
-        (void)write("a.clf", clf(factor));
+        (void)written("a.clf", clf(factor));
         EXPECT_EQ(factor_of(LutFile(path)), factor);
         EXPECT_EQ(factor_in_application(path), 2) << "OpenColorIO remembers what it has read";
     }
@@ -96,7 +92,7 @@ TEST_F(LutFileBesideOcio, LeavesTheLogToTheApplication) {
     const OCIO::LoggingLevel level = OCIO::GetLoggingLevel();
     static int messages = 0;
     OCIO::SetLoggingFunction([](const char*) { ++messages; });
-    const LutFile lut(write("unknown.clf", clf(5, "<Unknown/>\n")));
+    const LutFile lut(written("unknown.clf", clf(5, "<Unknown/>\n")));
     OCIO::ResetToDefaultLoggingFunction();
     EXPECT_EQ(factor_of(lut), 5);
     EXPECT_EQ(OCIO::GetLoggingLevel(), level);
@@ -107,24 +103,24 @@ TEST_F(LutFileBesideOcio, LeavesTheLogToTheApplication) {
 
 TEST_F(LutFileBesideOcio, ErrorsNameTheFile) {
     const std::string path =
-        write("broken.clf", clf(1, "<Matrix inBitDepth=\"8i\" outBitDepth=\"1\"></Matrix>\n"));
+        written("broken.clf", clf(1, "<Matrix inBitDepth=\"8i\" outBitDepth=\"1\"></Matrix>\n"));
     try {
         const LutFile lut(path);
         FAIL();
     } catch (const FileError& e) {
         const std::string message = e.what();
         EXPECT_EQ(message.rfind("read: " + path + ": ", 0), 0U) << message;
-        EXPECT_EQ(message.find((folder_ / "tmp").string()), std::string::npos) << message;
+        EXPECT_EQ(message.find(folder_ / "tmp"), std::string::npos) << message;
     }
     EXPECT_TRUE(leaves_nothing());
     fs::remove(folder_ / "tmp");
-    EXPECT_THROW(LutFile{write("a.clf", clf(2))}, FileError) << "no room for the copy";
+    EXPECT_THROW(LutFile{written("a.clf", clf(2))}, FileError) << "no room for the copy";
 }
 
 TEST_F(LutFileBesideOcio, ThreadsReadAtTheSameTime) {
     std::vector<std::string> paths;
     for (int i = 0; i < 8; ++i)
-        paths.push_back(write("t" + std::to_string(i) + ".clf", clf(10 + i % 3)));
+        paths.push_back(written("t" + std::to_string(i) + ".clf", clf(10 + i % 3)));
     std::array<std::vector<float>, 4> factors;
     std::vector<std::thread> threads;
     for (std::vector<float>& found : factors) {
@@ -155,7 +151,7 @@ TEST_F(LutFileBesideOcio, InterpolationsHaveNames) {
     std::string text = "LUT_3D_SIZE 2\n";
     for (int i = 0; i < 8; ++i)
         text += i == 3 ? "1 1 1\n" : "0 0 0\n";
-    const std::string path = write("a.cube", text);
+    const std::string path = written("a.cube", text);
     const std::array<float, 3> in = {0.5F, 0.5F, 0};
     for (const auto& [interpolation, expected] : {std::pair(LutInterpolation::trilinear, 0.25F),
                                                   std::pair(LutInterpolation::tetrahedral, 0.5F)}) {

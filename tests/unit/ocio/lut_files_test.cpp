@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Every kind of stage as OpenColorIO transforms, run by OCIO itself (CPU with the lossless and the
-// default optimizer, GPU if there is one), against the double reference. Bounds are in code values
-// of the display.
+// The numbers of LUT files, as OpenColorIO reads them.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 #include "lut/clf.h"
 #include "lut/half_domain.h"
@@ -16,35 +11,23 @@
 #include "ocio/gpu.h"
 #include "ocio/transforms.h"
 #include "tonewright/engine.h"
+#include "unit/folder.h"
+#include "unit/ocio/lowered_forms.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input();
-using Norm = ToneScaleStage::Norm;
-
-/// Grays, lattices, saturated and dark colors; all channels >= 0 and finite.
-std::vector<float> positive_colors() {
-    const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {9, 20000});
-    std::vector<float> rgb;
-    for (std::size_t i = 0; i < set.size(); ++i) {
-        if (!set.is_non_negative(i)) continue;
-        rgb.insert(rgb.end(), {set.rgb[3 * i], set.rgb[3 * i + 1], set.rgb[3 * i + 2]});
-    }
-    return rgb;
-}
 
 /// What OpenColorIO makes of colors with a table from a file.
 std::vector<float> through_file(const ClfTable& table, std::vector<float> rgb) {
-    const std::filesystem::path path =
-        std::filesystem::temp_directory_path() /
-        ("tonewright-table-" + std::to_string(::getpid()) + file_extension(table));
-    std::ofstream(path) << write_clf(table, "table", {"a test"});
+    const Folder folder;
+    const std::string path = folder / (std::string("table") + file_extension(table));
+    write(path, write_clf(table, "table", {"a test"}));
     const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
     file->setSrc(path.c_str());
     file->setInterpolation(table.dimension == 3 ? OCIO::INTERP_TETRAHEDRAL : OCIO::INTERP_LINEAR);
     OcioCpu(make_processor(file)).run_rgb(rgb.data(), rgb.data(), rgb.size() / 3);
-    std::filesystem::remove(path);
     OCIO::ClearAllCaches();
     return rgb;
 }

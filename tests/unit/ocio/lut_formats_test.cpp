@@ -9,6 +9,7 @@
 
 #include "base/format_number.h"
 #include "tonewright/lut.h"
+#include "unit/folder.h"
 #include "unit/lut/lut_cases.h"
 
 namespace OCIO = OCIO_NAMESPACE;

@@ -8,7 +8,7 @@
 #include "tonewright/definition.h"
 #include "tonewright/error.h"
 #include "tonewright/lut_file.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

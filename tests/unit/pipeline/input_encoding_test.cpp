@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tonewright/lut.h"
+#include "tonewright/input_encoding.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
-#include "unit/lut/lut_cases.h"
-
-namespace fs = std::filesystem;
+#include "tonewright/color.h"
+#include "tonewright/view.h"
+#include "unit/errors.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-template <class F>
-std::string error_of(const F& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
 
 TEST(InputEncoding, AcescctIsTheAcademys) {
     const InputEncoding e = parse_input_encoding("acescct");
@@ -221,23 +210,6 @@ TEST(InputEncoding, RefusesUnknownNames) {
     EXPECT_EQ(error("log2:0:64.5"), "input encoding is log2:0:64.5; expected [-64, 64] stops");
     EXPECT_NE(error("linear:1:0"), "no error");
     EXPECT_NE(error("acescct:0:1"), "no error") << "it has no ends to choose";
-}
-
-/// size^3 triplets, red fastest, of f(r, g, b) at the nodes.
-template <class F>
-Lut cube_of(int size, const F& f) {
-    Lut lut;
-    lut.size = size;
-    for (int b = 0; b < size; ++b) {
-        for (int g = 0; g < size; ++g) {
-            for (int r = 0; r < size; ++r) {
-                const double last = size - 1;
-                for (const double y : f(Vector3{r / last, g / last, b / last}))
-                    lut.values.push_back(static_cast<float>(y));
-            }
-        }
-    }
-    return lut;
 }
 
 }  // namespace

@@ -8,46 +8,16 @@
 
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/errors.h"
+#include "unit/pipeline/shown.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-/// By plain recursion over the expressions: no engine is under test here.
-Vector3 shown(const Pipeline& pipeline, const Vector3& rgb) {
-    const std::array<Expr, 3> f = compose(pipeline);
-    return {evaluate(f[0], rgb), evaluate(f[1], rgb), evaluate(f[2], rgb)};
-}
-
-void expect_rgb(const Vector3& actual, const Vector3& expected, double tolerance,
-                const std::string& what = "") {
-    for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_NEAR(actual[c], expected[c], tolerance) << what << ", channel " << c;
-    }
-}
-
-/// The text of the Error that `f` throws.
-template <class F>
-std::string error_of(const F& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
-
-/// Sums and products of a few doubles in another order: some units of 2^-53.
-constexpr double kRounding = 1e-14;
 
 std::string lower(std::string text) {
     for (char& c : text)
         c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
     return text;
-}
-
-Pipeline view_of(std::string_view op, std::string_view display, double stops = 0,
-                 std::string_view input = "lin_rec709") {
-    return build_view(make_view(resolve_operator(op), input, stops, display));
 }
 
 Vector3 multiplied_by_hand(const double (&m)[9], const Vector3& v) {

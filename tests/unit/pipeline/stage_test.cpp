@@ -9,6 +9,7 @@
 #include "pipeline/tone_curve.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/pipeline/shown.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -20,23 +21,7 @@ const Expr kB = Expr::input(2);
 
 using Norm = ToneScaleStage::Norm;
 
-/// By plain recursion over the expressions: no engine is under test here.
-Vector3 shown(const Pipeline& pipeline, const Vector3& rgb) {
-    const std::array<Expr, 3> f = compose(pipeline);
-    return {evaluate(f[0], rgb), evaluate(f[1], rgb), evaluate(f[2], rgb)};
-}
-
 Vector3 shown(const Stage& stage, const Vector3& rgb) { return shown(Pipeline{stage}, rgb); }
-
-void expect_rgb(const Vector3& actual, const Vector3& expected, double tolerance,
-                const std::string& what = "") {
-    for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_NEAR(actual[c], expected[c], tolerance) << what << ", channel " << c;
-    }
-}
-
-/// Sums and products of a few doubles in another order: some units of 2^-53.
-constexpr double kRounding = 1e-14;
 
 /// One stage of each kind that changes nothing, in the order of the variant.
 Pipeline identities() {

@@ -8,46 +8,13 @@
 #include "tonewright/pipeline.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/errors.h"
+#include "unit/pipeline/shown.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input(0);
-const Expr kR = Expr::input(0);
-const Expr kG = Expr::input(1);
-const Expr kB = Expr::input(2);
-
-/// By plain recursion over the expressions: no engine is under test here.
-Vector3 shown(const Pipeline& pipeline, const Vector3& rgb) {
-    const std::array<Expr, 3> f = compose(pipeline);
-    return {evaluate(f[0], rgb), evaluate(f[1], rgb), evaluate(f[2], rgb)};
-}
-
-void expect_rgb(const Vector3& actual, const Vector3& expected, double tolerance,
-                const std::string& what = "") {
-    for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_NEAR(actual[c], expected[c], tolerance) << what << ", channel " << c;
-    }
-}
-
-/// The text of the Error that `f` throws.
-template <class F>
-std::string error_of(const F& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
-
-std::string resolve_error(std::string_view name, const Settings& settings = {},
-                          std::string_view look = {}) {
-    return error_of([&] { (void)resolve_operator(name, settings, look); });
-}
-
-/// Sums and products of a few doubles in another order: some units of 2^-53.
-constexpr double kRounding = 1e-14;
 
 const Vector3 kColor = {2, 0.5, 0.1};
 const double kL = 0.2126 * 2 + 0.7152 * 0.5 + 0.0722 * 0.1;

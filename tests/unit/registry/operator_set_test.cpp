@@ -3,21 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <string>
 
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
+#include "unit/definition/definitions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-const std::string kHead = "tonewright = 1\nid = \"my\"\n";
-const std::string kStage = "[[stage]]\ncurve = \"max(x, 0)\"\n";
-
-std::shared_ptr<const Operator> parsed(const std::string& rest) {
-    return parse_operator(kHead + rest, "my.tone");
-}
 
 TEST(Definition, OperatorSetGivesTextsMoreNames) {
     OperatorSet set;

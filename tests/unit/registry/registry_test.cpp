@@ -13,31 +13,11 @@
 #include "base/strings.h"
 #include "tonewright/pipeline.h"
 #include "tonewright/view.h"
+#include "unit/errors.h"
+#include "unit/pipeline/shown.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-/// By plain recursion over the expressions: no engine is under test here.
-Vector3 shown(const Pipeline& pipeline, const Vector3& rgb) {
-    const std::array<Expr, 3> f = compose(pipeline);
-    return {evaluate(f[0], rgb), evaluate(f[1], rgb), evaluate(f[2], rgb)};
-}
-
-/// The text of the Error that `f` throws.
-template <class F>
-std::string error_of(const F& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
-
-std::string resolve_error(std::string_view name, const Settings& settings = {},
-                          std::string_view look = {}) {
-    return error_of([&] { (void)resolve_operator(name, settings, look); });
-}
 
 TEST(Resolve, OneGrammarForAll) {
     const auto label_of = [](std::string_view text) { return resolve_operator(text).label; };

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 

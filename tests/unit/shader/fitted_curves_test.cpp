@@ -4,19 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "tonewright/error.h"
-#include "tonewright/registry.h"
+#include "unit/shader/requests.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-ShaderRequest request_of(const std::string& op, const std::string& look = "",
-                         const std::string& display = "linear",
-                         ShaderLanguage language = ShaderLanguage::glsl) {
-    ShaderRequest request;
-    request.view = make_view(resolve_operator(op, {}, look), "lin_rec709", 0, display);
-    request.language = language;
-    return request;
-}
 
 // Curves in front of an argument and behind it, and one that reads it.
 TEST(Shader, FittedCurvesLeaveArgumentsAlone) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "base/format_number.h"
 #include "base/random.h"
@@ -12,40 +11,11 @@
 #include "tonewright/error.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
+#include "unit/shader/hostile_colors.h"
+#include "unit/shader/requests.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-ShaderRequest request_of(const std::string& op, const std::string& look = "",
-                         const std::string& display = "linear",
-                         ShaderLanguage language = ShaderLanguage::glsl) {
-    ShaderRequest request;
-    request.view = make_view(resolve_operator(op, {}, look), "lin_rec709", 0, display);
-    request.language = language;
-    return request;
-}
-
-/// Numbers that break shaders: 0, denormals, the largest half float, far beyond it, infinity; all
-/// signs, all combinations.
-std::vector<float> hostile_colors(std::size_t random_count) {
-    constexpr float kInf = std::numeric_limits<float>::infinity();
-    const std::vector<float> values = {0.0F,    -0.0F,   1e-45F, 1e-38F, 1e-30F, 1e-10F,
-                                       0.18F,   1.0F,    16.3F,  65504,  1e30F,  kInf,
-                                       -1e-45F, -1e-10F, -0.2F,  -65504, -1e30F, -kInf};
-    std::vector<float> rgb;
-    for (const float r : values) {
-        for (const float g : values) {
-            for (const float b : values)
-                rgb.insert(rgb.end(), {r, g, b});
-        }
-    }
-    SampleRandom random(19);
-    for (std::size_t i = 0; i < 3 * random_count; ++i) {
-        const auto x = static_cast<float>(std::exp2(random.uniform(-149, 127)));
-        rgb.push_back(random.uniform(0, 1) < 0.3 ? -x : x);
-    }
-    return rgb;
-}
 
 /// Every finite color and both infinities give finite numbers, as float computes them.
 void expect_finite(const ShaderProgram& program, const std::vector<float>& rgb,

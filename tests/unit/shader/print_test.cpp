@@ -7,20 +7,11 @@
 
 #include "tonewright/definition.h"
 #include "tonewright/error.h"
-#include "tonewright/registry.h"
 #include "tonewright/shader.h"
+#include "unit/shader/requests.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-ShaderRequest request_of(const std::string& op, const std::string& look = "",
-                         const std::string& display = "linear",
-                         ShaderLanguage language = ShaderLanguage::glsl) {
-    ShaderRequest request;
-    request.view = make_view(resolve_operator(op, {}, look), "lin_rec709", 0, display);
-    request.language = language;
-    return request;
-}
 
 // Written by hand, from E. Reinhard et al. 2002, equation 3, in each language's own grammar.
 TEST(Shader, ReinhardReadsLikeItsFormula) {

@@ -9,18 +9,10 @@
 #include "shader/program.h"
 #include "tonewright/error.h"
 #include "tonewright/registry.h"
+#include "unit/shader/requests.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-ShaderRequest request_of(const std::string& op, const std::string& look = "",
-                         const std::string& display = "linear",
-                         ShaderLanguage language = ShaderLanguage::glsl) {
-    ShaderRequest request;
-    request.view = make_view(resolve_operator(op, {}, look), "lin_rec709", 0, display);
-    request.language = language;
-    return request;
-}
 
 std::string error_of(const ShaderRequest& request) {
     try {

@@ -8,45 +8,16 @@
 #include <vector>
 
 #include "tonewright/error.h"
-#include "unit/lut/lut_cases.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-// Without a fault, as in tests/cli/test_lint.py, which has one for every finding.
-const std::string kGood = R"(ocio_profile_version: 2.1
-search_path: luts
-strictparsing: true
-environment: {}
-roles: {scene_linear: lin, default: lin, aces_interchange: aces, cie_xyz_d65_interchange: xyz, data: raw,
-        color_picking: sRGB, texture_paint: sRGB, default_byte: sRGB, default_float: lin, default_sequencer: sRGB,
-        compositing_log: lin}
-file_rules:
-  - !<Rule> {name: Default, colorspace: lin}
-displays:
-  sRGB:
-    - !<View> {name: Plain, view_transform: plain, display_colorspace: sRGB}
-    - !<View> {name: Raw, colorspace: raw}
-active_displays: [sRGB]
-active_views: [Plain, Raw]
-inactive_colorspaces: []
-default_view_transform: plain
-view_transforms:
-  - !<ViewTransform>
-    name: plain
-    from_scene_reference: !<RangeTransform> {min_in_value: 0, min_out_value: 0, max_in_value: 1, max_out_value: 1}
-display_colorspaces:
-  - !<ColorSpace> {name: xyz, encoding: display-linear}
-  - !<ColorSpace> {name: sRGB, encoding: sdr-video}
-colorspaces:
-  - !<ColorSpace> {name: lin, aliases: [Linear], encoding: scene-linear}
-  - !<ColorSpace> {name: aces, encoding: scene-linear}
-  - !<ColorSpace> {name: raw, isdata: true, encoding: data}
-)";
-
+/// Findings of a config without a fault, after a change. tests/cli/test_lint.py has one for every
+/// finding.
 std::vector<LintFinding> lint(const std::string& old, const std::string& changed) {
     const Folder folder;
-    std::string text = kGood;
+    std::string text = read(TONEWRIGHT_TEST_DATA "/good_config.ocio");
     if (!old.empty()) {
         EXPECT_NE(text.find(old), std::string::npos);
         text.replace(text.find(old), old.size(), changed);

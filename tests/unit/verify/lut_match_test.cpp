@@ -3,11 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
 #include <vector>
 
-#include "tonewright/error.h"
 #include "tonewright/lut_file.h"
+#include "unit/folder.h"
 #include "unit/lut/lut_cases.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -24,6 +24,11 @@ TEST(Clipping, SaysWhichStops) {
     EXPECT_NEAR(two.above->end, 2, 1e-12);
     EXPECT_NEAR(two.above->error, 1 - kCodeAtTwoStops, 1e-12);
     EXPECT_FALSE(two.below);
+    // White stays white: there is no stop at which the two agree again.
+    EXPECT_EQ(to_string(two), "above +2.00 stops from 0.18, without end, by up to 1.4e-01");
+    EXPECT_EQ(to_string(clipping("clamp", "log2:-8:2")),
+              "above +2.00 stops from 0.18, without end, by up to 1.4e-01; below -8.00 stops, down "
+              "to black, by up to 9.1e-03");
     EXPECT_FALSE(clipping("clamp", "log2:-16:3").above);
     EXPECT_EQ(to_string(clipping("clamp", "log2:-16:3")), "");
     // 12.92 * 0.18 * 2^-8 is 9.08e-3: so much black is off.

@@ -63,5 +63,47 @@ TEST(CubeSolver, HeldNodesStay) {
     }
 }
 
+TEST(CubeSolver, NodesAreTheWeightedMeanOfSamplesThatContradictEachOther) {
+    // At a node, one sample of weight 3 wants 0.2 and one of weight 1 wants 0.6.
+    CubeSolver solver(2, {}, {});
+    for (const double r : {0.0, 1.0}) {
+        for (const double g : {0.0, 1.0}) {
+            for (const double b : {0.0, 1.0}) {
+                solver.add({r, g, b}, {0.2, 0.2, 0.2}, 3);
+                solver.add({r, g, b}, {0.6, 0.6, 0.6}, 1);
+            }
+        }
+    }
+    solver.sort_samples();
+    CubeNodes nodes = identity(2);
+    solver.solve(nodes, 4);
+    for (const double node : nodes)
+        EXPECT_NEAR(node, 0.3, 1e-4);
+}
+
+TEST(CubeSolver, EvennessDecidesWhereThereAreNoSamples) {
+    // Gray samples of the identity's square; nodes that no sample touches follow their neighbors.
+    CubeSolverOptions options;
+    options.evenness = 1e-3;
+    CubeSolver solver(5, {}, options);
+    for (int r = 0; r <= 4; ++r) {
+        for (int g = 0; g <= 4; ++g) {
+            for (int b = 0; b <= 4; ++b) {
+                if (r == 2 && g == 2 && b == 2) continue;
+                const Vector3 place = {r / 4.0, g / 4.0, b / 4.0};
+                solver.add(place, place, 1);
+            }
+        }
+    }
+    solver.sort_samples();
+    CubeNodes nodes = identity(5);
+    const std::size_t middle = 3 * (2 * 25 + 2 * 5 + 2);
+    for (std::size_t c = 0; c < 3; ++c)
+        nodes[middle + c] = 0;
+    solver.solve(nodes, 4);
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(nodes[middle + c], 0.5, 1e-3);
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

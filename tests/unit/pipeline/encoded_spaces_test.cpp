@@ -52,7 +52,7 @@ TEST(SourceColors, AbsoluteLightIsThatOfHdrDisplays) {
     EXPECT_FALSE(find_source_color("hlg").is_absolute) << "light of the scene";
 }
 
-/// The config's logs are OpenColorIO's LogAffineTransform; pictures have the makers' formula.
+// The config's logs are OpenColorIO's LogAffineTransform; pictures have the makers' formula.
 TEST(SourceColors, LogsOfTheConfigAreTheSameCurve) {
     for (const EncodedSpace& space : all_encoded_spaces()) {
         if (space.kind != EncodedSpace::Kind::log) continue;
@@ -65,6 +65,14 @@ TEST(SourceColors, LogsOfTheConfigAreTheSameCurve) {
             // Makers print their constants with 7 digits.
             EXPECT_NEAR(decode({code, code, code})[0] / light, 1, 1e-6) << space.title;
         }
+        if (!c.linear_break) continue;
+        // OpenColorIO continues with the slope of the logarithm at the break.
+        const double at_break = c.linear_slope * *c.linear_break + c.linear_offset;
+        const double code = c.log_slope * std::log(at_break) / std::log(c.base) + c.log_offset;
+        const double slope = c.log_slope * c.linear_slope / (at_break * std::log(c.base));
+        EXPECT_NEAR(decode({code, code, code})[0], *c.linear_break, 1e-8) << space.title;
+        const double below = code - 0.02 * slope;
+        EXPECT_NEAR(decode({below, below, below})[0], *c.linear_break - 0.02, 1e-8) << space.title;
     }
 }
 

@@ -33,6 +33,9 @@ TEST(LutMatch, FindsTheOperatorItsEncodingAndItsDisplay) {
     // 33 nodes of 16.5 stops are half a stop apart. The second derivative of a curve in codes is
     // below 0.1 a stop^2, so that a straight line errs by at most 0.1/8 0.52^2.
     EXPECT_LT(matches[0].p999, 0.004);
+    EXPECT_GT(matches[0].p999, 1e-6) << "measured, not assumed";
+    // Reinhard and Narkowicz show 0.18 at codes 0.05 and more away.
+    EXPECT_GT(matches[1].p999, 0.02) << matches[1].op;
 }
 
 TEST(LutMatch, FindsAPlainClamp) {

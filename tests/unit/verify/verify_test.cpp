@@ -50,10 +50,9 @@ TEST(Verify, RequestsAreChecked) {
              [](VerifyOptions& o) { o.operators = {resolve_picture_operator("reinhard_local")}; },
              [](VerifyOptions& o) { o.displays = {"srgbb"}; },
              [](VerifyOptions& o) { o.input = "lin_rec710"; },
+             [](VerifyOptions& o) { o.shaders = {"msl"}; },
              [](VerifyOptions& o) {
-                 // Without the GPU, shaders are left out, and so is the check of their names.
-                 o.with_gpu = true;
-                 o.shaders = {"msl"};
+                 o.shaders = {"none", "c"};
              },
              [](VerifyOptions& o) { o.config = "/nonexistent/config.ocio"; }}) {
         VerifyOptions options = quick();

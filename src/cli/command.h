@@ -37,7 +37,7 @@ struct ViewOptions {
     double exposure = 0;
     std::string input = "lin_rec709";
     std::string display = "srgb";
-    double reference_white = kReferenceWhite;
+    double reference_white = kUnitLuminance;
     std::string input_units = "relative";
     /// Names of the options that the command line has, such as `--input`.
     std::set<std::string> given = {};

@@ -127,7 +127,7 @@ class Forms {
     Form shader(const ShaderApplication& application) {
         const View own = view(op_, "lin_rec709", application.display);
         const std::string language = application.title + ", shader";
-        if (!reads_lattice(own))
+        if (!reads_grid(own))
             return {0, language,
                     command("shader", options_.op, application.id, application.extension)};
         const std::vector<Preset>& presets = op_.op->presets;

@@ -104,7 +104,7 @@ struct MeterCommandOptions {
     std::string frames;
     std::string input = "auto";
     std::string input_units = "relative";
-    double reference_white = kReferenceWhite;
+    double reference_white = kUnitLuminance;
     bool json = false;
     PictureInput picture;
     ExposureOptions metering;
@@ -122,7 +122,7 @@ struct CompareOptions {
     double exposure = 0;
     std::string input = "auto";
     std::string input_units = "relative";
-    double reference_white = kReferenceWhite;
+    double reference_white = kUnitLuminance;
     int columns = 0;
     int cell_width = 480;
     bool has_false_color = false;
@@ -159,7 +159,7 @@ struct InfoOptions {
 struct ReportPictureOptions {
     std::string path;  // empty: the chart
     std::string input_units = "relative";
-    double reference_white = kReferenceWhite;
+    double reference_white = kUnitLuminance;
     /// A larger picture is made smaller.
     int width = 960;
     PictureChoice choice;

@@ -30,7 +30,7 @@ Quantity parse_quantity(const std::string& text) {
 
 /// Display-linear 1: white in percent, or cd/m2 on HDR displays.
 constexpr double kUnit = 100;
-static_assert(kUnit == kReferenceWhite);
+static_assert(kUnit == kUnitLuminance);
 
 // Smallest distance between numbers on the two sides, as a fraction of the graph's height.
 constexpr double kTickDistance = 0.055;

@@ -38,7 +38,7 @@ struct Options {
     std::vector<std::string> operators;
     int width = 960;
     std::string input_units = "relative";
-    double reference_white = kReferenceWhite;
+    double reference_white = kUnitLuminance;
     PictureChoice choice;
     bool no_parity = false;
 };
@@ -348,7 +348,7 @@ class PageContents {
         for (const ResolvedOperator& op : operators_) {
             if (!op.op->is_local()) verify_options.operators.push_back(op);
         }
-        verify_options.lattice_edge = 9;
+        verify_options.gamut_grid_size = 9;
         verify_options.random_count = 10000;
         verify_options.only_best_target = true;
         verify_options.shaders = {"glsl-es"};

@@ -186,9 +186,9 @@ void write_all(const Options& options) {
         request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
                                  options.exposure, options.display);
         const ShaderErrors errors = measure_shader(request);  // all languages share them
-        const bool is_lattice = reads_lattice(request.view);
+        const bool is_grid = reads_grid(request.view);
         for (const ShaderLanguageInfo& language : languages) {
-            if (is_lattice && !language.holds_lattices) {
+            if (is_grid && !language.holds_grids) {
                 ++left_out[language.id];
                 continue;
             }
@@ -205,11 +205,11 @@ void write_all(const Options& options) {
                 files.push_back(std::move(file));
         }
     }
-    for (const auto& [language, lattices] : left_out) {
+    for (const auto& [language, grids] : left_out) {
         print_result(
-            fmt::format("{}: {} without a shader, because they read lattices, which it "
+            fmt::format("{}: {} without a shader, because they read grids, which it "
                         "cannot hold",
-                        language, lattices));
+                        language, grids));
     }
     print_result(fmt::format("{}: {} shaders", options.all, count));
     files.push_back({"MANIFEST.csv", manifest});

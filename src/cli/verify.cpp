@@ -157,7 +157,7 @@ int run_verify(Options& options) {
     }
     verify_options.with_gpu = !options.no_gpu;
     if (options.quick) {
-        verify_options.lattice_edge = 9;
+        verify_options.gamut_grid_size = 9;
         verify_options.random_count = 10000;
     }
     redirect_opencolorio_messages([](const std::string& text) {

@@ -110,9 +110,9 @@ std::array<std::vector<double>, 3> values_at(const std::array<Expr, 3>& f,
         for (int i = 0; i < 3; ++i)
             in.at(static_cast<std::size_t>(i)) =
                 &values.at(e.operand(std::min(i, e.operand_count() - 1)).node());
-        if (e.op() == ExprOp::lattice) {
+        if (e.op() == ExprOp::grid) {
             for (std::size_t i = 0; i < count; ++i)
-                out[i] = (*e.lattice())(e.channel(), (*in[0])[i], (*in[1])[i], (*in[2])[i]);
+                out[i] = (*e.grid())(e.channel(), (*in[0])[i], (*in[1])[i], (*in[2])[i]);
             continue;
         }
         for (std::size_t i = 0; i < count; ++i)

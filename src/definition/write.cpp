@@ -303,7 +303,7 @@ class Writer {
         line("cross_talk", three(formulas({s.f[0], s.f[1], s.f[2]}, {"r", "g", "b"})));
         text_line("name", s.name);
     }
-    void write_stage(const LatticeStage&) { throw Error("it has a 3D table"); }
+    void write_stage(const GridStage&) { throw Error("it has a 3D table"); }
 
     const ResolvedOperator& resolved_;
     const Operator& op_;

@@ -76,7 +76,7 @@ class Assembler {
             step.is_positive = s.is_positive;
             if (s.op == Op::lookup) step.table = table(*s.table);
             if (s.op == Op::curve) step.table = curve(*s.curve);
-            if (s.op == Op::lattice) step.table = lattice(*s.lattice, step.wide);
+            if (s.op == Op::grid) step.table = grid(*s.grid, step.wide);
             if (s.op == Op::lookup_nonuniform) {
                 step.table = static_cast<std::uint32_t>(positioned_.size());
                 positioned_.push_back(at_positions(slot, step.wide));
@@ -96,7 +96,7 @@ class Assembler {
         code.uniforms = std::move(uniforms_);
         code.tables = std::move(tables_);
         code.positioned = std::move(positioned_);
-        code.lattices = std::move(lattices_);
+        code.grids = std::move(grids_);
         code.curves = std::move(curves_);
         code.is_one_function = is_one_function();
         return code;
@@ -219,7 +219,7 @@ class Assembler {
     void add_result(Instruction& step, std::size_t slot) {
         const Selected& s = steps_[slot];
         const auto n = static_cast<std::size_t>(s.sibling);
-        step.out[s.op == Op::lattice ? static_cast<std::size_t>(s.channel) : n] = place(slot);
+        step.out[s.op == Op::grid ? static_cast<std::size_t>(s.channel) : n] = place(slot);
         std::copy(s.k.begin(), s.k.end(),
                   step.k.begin() + 3 * static_cast<std::ptrdiff_t>(s.sibling));
     }
@@ -297,11 +297,11 @@ class Assembler {
         return it->second;
     }
 
-    std::uint32_t lattice(const Lattice& source, bool is_wide) {
-        const std::uint32_t found = find(lattice_index_, source, lattices_, [&] {
-            return SampledLattice{source.edge(), {}};
+    std::uint32_t grid(const Grid& source, bool is_wide) {
+        const std::uint32_t found = find(grid_index_, source, grids_, [&] {
+            return SampledGrid{source.edge(), {}};
         });
-        Samples& nodes = lattices_[found].nodes;
+        Samples& nodes = grids_[found].nodes;
         if (!(is_wide ? nodes.wide.empty() : nodes.narrow.empty())) return found;
         for (std::size_t i = 0; i < source.nodes().size(); ++i) {
             add(nodes, source.nodes()[i], is_wide);
@@ -335,8 +335,8 @@ class Assembler {
     std::vector<SampledTable> tables_;
     std::map<const Table*, std::uint32_t> table_index_;
     std::vector<NonuniformTables> positioned_;
-    std::vector<SampledLattice> lattices_;
-    std::map<const Lattice*, std::uint32_t> lattice_index_;
+    std::vector<SampledGrid> grids_;
+    std::map<const Grid*, std::uint32_t> grid_index_;
     std::vector<CompiledCurve> curves_;
     CurveIndex curve_index_;
 };

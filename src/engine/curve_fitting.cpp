@@ -53,7 +53,7 @@ int cost_of(const TapeInstruction& step) {
             return 60;
         case ExprOp::lookup:
             return 25;
-        case ExprOp::lattice:
+        case ExprOp::grid:
             return 100;
         case ExprOp::divide:
         case ExprOp::square_root:
@@ -77,7 +77,7 @@ Interval interval_of(const TapeInstruction& step, const Interval& a, const Inter
     if (step.op == ExprOp::input)
         return step.is_limited ? Interval{-kHalfMax, kHalfMax} : Interval{};
     if (step.op == ExprOp::uniform) return {step.least, step.most};
-    return tonewright::interval_of(step.op, a, b, c, step.table, step.lattice);
+    return tonewright::interval_of(step.op, a, b, c, step.table, step.grid);
 }
 
 class CurveFitter {
@@ -256,7 +256,7 @@ class CurveFitter {
             const TapeInstruction& step = code_[i];
             append(step.op);
             append(step.table);
-            append(step.lattice);
+            append(step.grid);
             append(step.curve);
             for (const std::uint32_t v : operands_of(step)) {
                 const bool is_constant = code_[v].op == ExprOp::constant;
@@ -321,7 +321,7 @@ class CurveFitter {
                                   int cost) {
         static const FittedCurve none;
         for (const std::uint32_t i : steps) {
-            if (code_[i].op == ExprOp::lattice || code_[i].curve) return none;
+            if (code_[i].op == ExprOp::grid || code_[i].curve) return none;
         }
         // Rounded to powers, so that channels that are treated alike share a curve.
         const Interval range = {interval_[root].lo < 0 ? -kInfinity : 0,

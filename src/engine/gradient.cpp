@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "engine/reference_operations.h"
-#include "expr/lattice_place.h"
+#include "expr/grid_place.h"
 #include "tonewright/engine.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -75,16 +75,16 @@ template <class F>
     });
 }
 
-/// A channel of a lattice and its derivatives.
-void run_lattice(const TapeInstruction& step, const Rows& rows, std::size_t n) {
+/// A channel of a grid and its derivatives.
+void run_grid(const TapeInstruction& step, const Rows& rows, std::size_t n) {
     const auto [a, b, c] = rows.x;
     const auto channel = static_cast<std::size_t>(step.input);
-    const double* const nodes = step.lattice->nodes().data() + channel;
-    const int edge = step.lattice->edge();
+    const double* const nodes = step.grid->nodes().data() + channel;
+    const int edge = step.grid->edge();
     std::array<Row, 3> slope{};
     for (std::size_t i = 0; i < n; ++i) {
         const std::array<double, 3> at = {a[i], b[i], c[i]};
-        const LatticePlace place(edge, at);
+        const GridPlace place(edge, at);
         rows.y[i] = place.interpolate(nodes);
         const std::array<double, 3> d = place.gradient(nodes, edge, at);
         for (std::size_t k = 0; k < 3; ++k)
@@ -160,7 +160,7 @@ void run_lattice(const TapeInstruction& step, const Rows& rows, std::size_t n) {
         case ExprOp::floor:
         case ExprOp::constant:
         case ExprOp::input:
-        case ExprOp::lattice:
+        case ExprOp::grid:
         case ExprOp::uniform:
             return;
     }
@@ -210,7 +210,7 @@ GradientEngine::GradientEngine(const Pipeline& pipeline) : tape_(pipeline) {
         last_use[x] = code.size();
     std::vector<std::size_t> free;
     for (std::size_t i = 0; i < code.size(); ++i) {
-        if (code[i].lattice) (void)code[i].lattice->nodes();
+        if (code[i].grid) (void)code[i].grid->nodes();
         Step step{.instruction = code[i]};
         const std::vector<std::uint32_t> read = operands(code[i]);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -276,8 +276,8 @@ void GradientEngine::run(const std::array<const double*, 3>& in, const std::arra
                         step.operand_inputs[x] >> k & 1 ? row(step.in[x], 1 + k) : kZeros.data();
                 }
             }
-            if (instruction.op == ExprOp::lattice) {
-                run_lattice(instruction, rows, n);
+            if (instruction.op == ExprOp::grid) {
+                run_grid(instruction, rows, n);
                 continue;
             }
             run_instruction(instruction, y, rows.x[0], rows.x[1], rows.x[2], n);

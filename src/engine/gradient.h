@@ -16,7 +16,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Safe to share between threads.
 class GradientEngine {
   public:
-    /// @throws Error  what Lattice::nodes() throws
+    /// @throws Error  what Grid::nodes() throws
     explicit GradientEngine(const Pipeline& pipeline);
 
     /// Planar. At a kink the derivative of one side, 0 where it is not finite.

@@ -117,7 +117,7 @@ double half_ulps(ExprOp op) {
         case ExprOp::power:
         case ExprOp::lookup:
             return 3;
-        case ExprOp::lattice:  // nodes, weights, and a sum of four products
+        case ExprOp::grid:  // nodes, weights, and a sum of four products
             return 4;
         default:
             return 1;
@@ -131,7 +131,7 @@ double cost_of_double(ExprOp op) {
         case ExprOp::log2:
         case ExprOp::power:
         case ExprOp::lookup:
-        case ExprOp::lattice:
+        case ExprOp::grid:
             return 4;
         default:
             return 1;
@@ -343,7 +343,7 @@ class PrecisionChooser {
             } else if (is_number(code_[i].op)) {
                 error.lane.fill(rounding(i, 0, kNoOutput));
                 block_.add_squares(i, error, sums_);
-            } else if (code_[i].op == ExprOp::lookup || code_[i].op == ExprOp::lattice) {
+            } else if (code_[i].op == ExprOp::lookup || code_[i].op == ExprOp::grid) {
                 for (std::size_t lane = 0; lane < block_.size(); ++lane)
                     error.lane[lane] = rounding(i, lane, kNoOutput);
                 block_.add_squares(i, error, sums_);
@@ -548,11 +548,11 @@ class PrecisionChooser {
                 of_position = 4 * std::fabs(table_rise(*step.table, x)) * kHalfUlp;
             }
         }
-        if (step.op == ExprOp::lattice) {
+        if (step.op == ExprOp::grid) {
             const std::array<double, 3> at = {
                 block_.value(step.a, lane), block_.value(step.b, lane), block_.value(step.c, lane)};
             const std::array<double, 3> slope =
-                step.lattice->gradient(step.input, at[0], at[1], at[2]);
+                step.grid->gradient(step.input, at[0], at[1], at[2]);
             for (std::size_t k = 0; k < 3; ++k) {
                 if (!in_double_[nodes_[i].operand[k]])
                     of_position += std::fabs(slope[k] * at[k]) * kHalfUlp;

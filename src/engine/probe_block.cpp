@@ -180,10 +180,10 @@ template <class V>
             return partials.set(0, n, [&](std::size_t l) {
                 return step.curve ? step.curve->slope(a[l]) : table_slope(*step.table, a[l]);
             });
-        case ExprOp::lattice:
+        case ExprOp::grid:
             for (std::size_t l = 0; l < n; ++l) {
                 const std::array<double, 3> slope =
-                    step.lattice->gradient(step.input, a[l], b[l], c[l]);
+                    step.grid->gradient(step.input, a[l], b[l], c[l]);
                 for (std::size_t k = 0; k < 3; ++k)
                     partials.row[k].lane[l] = slope[k];
             }
@@ -414,9 +414,9 @@ void ProbeBlock::run(std::uint32_t i, const Vector3* colors) {
         const double exposure = step.is_limited ? 1 : step.value;
         for (std::size_t l = 0; l < size_; ++l)
             out[l] = colors[l][static_cast<std::size_t>(step.input)] / exposure;
-    } else if (step.op == ExprOp::lattice) {
+    } else if (step.op == ExprOp::grid) {
         for (std::size_t l = 0; l < size_; ++l)
-            out[l] = (*step.lattice)(step.input, a[l], b[l], c[l]);
+            out[l] = (*step.grid)(step.input, a[l], b[l], c[l]);
     } else if (step.curve) {
         for (std::size_t l = 0; l < size_; ++l)
             out[l] = (*step.curve)(a[l]);

@@ -60,7 +60,7 @@ enum class Op : std::uint8_t {
     lookup,
     lookup_nonuniform,  // of one to three tables with the same positions
     curve,              // compiled
-    lattice,            // of coordinates a, b, c: all three channels
+    grid,               // of coordinates a, b, c: all three channels
 };
 
 struct Operation {
@@ -105,9 +105,9 @@ inline constexpr Operation kOperations[] = {
     {"lookup", 1},
     {"lookup_nonuniform", 1, true},
     {"curve", 1},
-    {"lattice", 3, true},
+    {"grid", 3, true},
 };
-static_assert(std::size(kOperations) == static_cast<std::size_t>(Op::lattice) + 1);
+static_assert(std::size(kOperations) == static_cast<std::size_t>(Op::grid) + 1);
 
 [[nodiscard]] constexpr const Operation& operation(Op op) {
     return kOperations[static_cast<std::size_t>(op)];
@@ -159,7 +159,7 @@ struct NonuniformTables {
 };
 
 /// Nodes of red, green, blue and one unused; in double where its results are.
-struct SampledLattice {
+struct SampledGrid {
     int edge = 0;
     Samples nodes;
 };
@@ -178,7 +178,7 @@ struct Instruction {
     std::array<Operand, 3> out = {kUnused, kUnused, kUnused};
     std::array<Operand, 4> in = {kUnused, kUnused, kUnused, kUnused};
     std::array<double, 9> k{};  // coefficients of dot3, exponent of power_constant
-    std::uint32_t table = 0;    // of a lookup, a curve, a lattice: its index among those
+    std::uint32_t table = 0;    // of a lookup, a curve, a grid: its index among those
 };
 
 /// Largest tile, in pixels.
@@ -236,14 +236,14 @@ struct Code {
     std::shared_ptr<const Tape> source;  // computes them
     std::vector<SampledTable> tables;
     std::vector<NonuniformTables> positioned;
-    std::vector<SampledLattice> lattices;
+    std::vector<SampledGrid> grids;
     std::vector<CompiledCurve> curves;
     /// Each channel of the result is the same function of that channel alone: the floats of RGB
     /// pixels need not be sorted by channel.
     bool is_one_function = false;
     /// Pixels per tile: a multiple of kLaneMultiple, such that the registers fit into the file.
     std::size_t tile = 0;
-    /// The same as machine code, where it could be made. Refers to the tables, lattices and curves:
+    /// The same as machine code, where it could be made. Refers to the tables, grids and curves:
     /// a program is moved, not copied.
     std::shared_ptr<const MachineCode> machine;
 

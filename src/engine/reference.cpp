@@ -6,7 +6,7 @@
 
 #include "engine/reference_operations.h"
 #include "engine/tape.h"
-#include "expr/lattice_place.h"
+#include "expr/grid_place.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/engine.h"
 #include "tonewright/error.h"
@@ -61,18 +61,18 @@ void run_on(const TapeInstruction& step, double* out, const double* a, const dou
     kAll[static_cast<std::size_t>(step.op)](out, a, b, c, step.table, n);
 }
 
-/// Of the same place in a lattice, what several instructions make of it: a place is found once.
-struct LatticeChannels {
+/// Of the same place in a grid, what several instructions make of it: a place is found once.
+struct GridChannels {
     std::size_t count = 0;
     std::array<std::size_t, 3> channel{};
     std::array<double*, 3> out{};
 };
 
-void run_lattice(const Lattice& lattice, const LatticeChannels& channels, const double* a,
-                 const double* b, const double* c, std::size_t n) noexcept {
-    const double* const nodes = lattice.nodes().data();
+void run_grid(const Grid& grid, const GridChannels& channels, const double* a, const double* b,
+              const double* c, std::size_t n) noexcept {
+    const double* const nodes = grid.nodes().data();
     for (std::size_t i = 0; i < n; ++i) {
-        const LatticePlace place(lattice.edge(), {a[i], b[i], c[i]});
+        const GridPlace place(grid.edge(), {a[i], b[i], c[i]});
         for (std::size_t k = 0; k < channels.count; ++k)
             channels.out[k][i] = place.interpolate(nodes + channels.channel[k]);
     }
@@ -100,11 +100,11 @@ struct ReferenceEngine::Program {
         const TapeInstruction* instruction;
         Row out, a, b, c;
 
-        /// Another channel of the same values in the same lattice.
+        /// Another channel of the same values in the same grid.
         [[nodiscard]] bool is_at_place_of(const Step& other) const {
             const TapeInstruction& i = *instruction;
             const TapeInstruction& o = *other.instruction;
-            return i.lattice && i.lattice == o.lattice && i.a == o.a && i.b == o.b && i.c == o.c;
+            return i.grid && i.grid == o.grid && i.a == o.a && i.b == o.b && i.c == o.c;
         }
     };
 
@@ -120,7 +120,7 @@ struct ReferenceEngine::Program {
         std::vector<bool> needs_register;
         for (const TapeInstruction& step : code) {
             // run() must not throw, so the functions of users run here.
-            if (step.lattice) (void)step.lattice->nodes();
+            if (step.grid) (void)step.grid->nodes();
             std::array<std::int64_t, 4> read = {-1, -1, -1, -1};
             const std::array<std::uint32_t, 3> all = {step.a, step.b, step.c};
             for (std::size_t k = 0; k < static_cast<std::size_t>(operand_count(step.op)); ++k)
@@ -181,8 +181,8 @@ void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::arr
                 const bool is_limited = step.instruction->is_limited;
                 for (std::size_t k = 0; k < n; ++k)
                     result[k] = is_limited ? sanitize(plane[k]) : without_nan(plane[k]);
-            } else if (step.instruction->op == ExprOp::lattice) {
-                LatticeChannels channels;
+            } else if (step.instruction->op == ExprOp::grid) {
+                GridChannels channels;
                 const auto add = [&](const Program::Step& same) {
                     channels.channel[channels.count] =
                         static_cast<std::size_t>(same.instruction->input);
@@ -193,8 +193,8 @@ void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::arr
                 while (channels.count < 3 && at + 1 != program.steps.end() &&
                        (at + 1)->is_at_place_of(step))
                     add(*++at);
-                run_lattice(*step.instruction->lattice, channels, read(step.a), read(step.b),
-                            read(step.c), n);
+                run_grid(*step.instruction->grid, channels, read(step.a), read(step.b),
+                         read(step.c), n);
             } else {
                 run_step(*step.instruction, result, read(step.a), read(step.b), read(step.c), n);
             }
@@ -217,9 +217,9 @@ Vector3 ReferenceEngine::operator()(const Vector3& rgb) const noexcept {
         if (instruction.op == ExprOp::input) {
             const double x = rgb[static_cast<std::size_t>(instruction.input)];
             result = instruction.is_limited ? sanitize(x) : without_nan(x);
-        } else if (instruction.op == ExprOp::lattice) {
+        } else if (instruction.op == ExprOp::grid) {
             result =
-                (*instruction.lattice)(instruction.input, read(step.a), read(step.b), read(step.c));
+                (*instruction.grid)(instruction.input, read(step.a), read(step.b), read(step.c));
         } else {
             result = scalar_op(instruction.op, read(step.a), read(step.b), read(step.c),
                                instruction.table);

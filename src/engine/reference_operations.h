@@ -7,7 +7,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Runs one operation of the reference over n values: all but inputs, constants and lattices.
+/// Runs one operation of the reference over n values: all but inputs, constants and grids.
 /// @param out  may be one of the operands
 using RunInstruction = void (*)(const TapeInstruction& step, double* out, const double* a,
                                 const double* b, const double* c, std::size_t n);

@@ -13,13 +13,13 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
-/// One instruction computes both: two channels of one lattice at one place, two rows of a matrix,
+/// One instruction computes both: two channels of one grid at one place, two rows of a matrix,
 /// two tables with the same positions.
 bool are_siblings(const Selected& x, const Selected& y) {
     if (x.op != y.op || x.operands != y.operands) return false;
     switch (x.op) {
-        case Op::lattice:
-            return x.lattice == y.lattice;
+        case Op::grid:
+            return x.grid == y.grid;
         case Op::dot3:
             return true;
         case Op::lookup_nonuniform:
@@ -261,10 +261,10 @@ class Selector {
                             : step.table->positions.empty() ? Op::lookup
                                                             : Op::lookup_nonuniform,
                             {a});
-            case ExprOp::lattice:
-                current_.lattice = step.lattice;
+            case ExprOp::grid:
+                current_.grid = step.grid;
                 current_.channel = step.input;
-                return emit(Op::lattice, {a, b, step.c});
+                return emit(Op::grid, {a, b, step.c});
             default: {
                 current_.op = same_operation(step.op);
                 current_.is_positive = step.op == ExprOp::log2 && is_positive(a);

@@ -20,9 +20,9 @@ struct Selected {
     std::array<std::int64_t, 4> operands = {kNone, kNone, kNone, kNone};
     std::array<double, 3> k{};
     const Table* table = nullptr;
-    const Lattice* lattice = nullptr;
+    const Grid* grid = nullptr;
     const CompiledCurve* curve = nullptr;
-    int channel = 0;  // of the lattice
+    int channel = 0;  // of the grid
     int sibling = 0;  // 0, or how many siblings come before: they are one instruction
     bool wide = false;
     bool is_positive = false;

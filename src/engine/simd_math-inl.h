@@ -480,9 +480,8 @@ HWY_INLINE void lookup_nonuniform(D d, Vec<D> x, const NonuniformTables& tables,
 
 /// Tetrahedral interpolation.
 template <class D>
-HWY_INLINE void interpolate(D d, const Vec<D>* given, const SampledLattice& lattice,
-                            Vec<D>* result) {
-    const double edge = lattice.edge;
+HWY_INLINE void interpolate(D d, const Vec<D>* given, const SampledGrid& grid, Vec<D>* result) {
+    const double edge = grid.edge;
     Vec<D> cell[3], f[3];
     for (int c = 0; c < 3; ++c) {
         const auto t = hn::Min(hn::Max(given[c], hn::Zero(d)), set(d, 1));
@@ -513,7 +512,7 @@ HWY_INLINE void interpolate(D d, const Vec<D>* given, const SampledLattice& latt
                               hn::Sub(middle, lowest), lowest};
     for (int k = 0; k < 4; ++k) {
         Vec<D> node[4];
-        rows_at(d, lattice.nodes.of<Number<D>>(), places(place[k]), 4).columns(0, node);
+        rows_at(d, grid.nodes.of<Number<D>>(), places(place[k]), 4).columns(0, node);
         for (int c = 0; c < 3; ++c)
             result[c] =
                 k == 0 ? hn::Mul(weight[k], node[c]) : hn::MulAdd(weight[k], node[c], result[c]);
@@ -761,9 +760,9 @@ HWY_INLINE void compute(D d, const Code& code, const Instruction& step, const X&
         }
     } else {
         Vec<D> result[3];
-        if constexpr (op == Op::lattice) {
+        if constexpr (op == Op::grid) {
             const Vec<D> in[3] = {x(0), x(1), x(2)};
-            interpolate(d, in, code.lattices[step.table], result);
+            interpolate(d, in, code.grids[step.table], result);
         } else {
             lookup_nonuniform(d, x(0), code.positioned[step.table], result);
         }

@@ -57,12 +57,12 @@ std::uint32_t Tape::add(const Expr& expr,
         step.is_limited = limits_input_;
     }
     if (expr.op() == ExprOp::lookup) step.table = expr.table().get();
-    if (expr.op() == ExprOp::lattice) {
-        step.lattice = expr.lattice().get();
+    if (expr.op() == ExprOp::grid) {
+        step.grid = expr.grid().get();
         step.input = expr.channel();
     }
     bool is_live = expr.op() == ExprOp::uniform;
-    bool is_number = expr.op() != ExprOp::input && expr.op() != ExprOp::lattice;
+    bool is_number = expr.op() != ExprOp::input && expr.op() != ExprOp::grid;
     std::array<std::uint32_t*, 3> slots = {&step.a, &step.b, &step.c};
     for (int i = 0; i < expr.operand_count(); ++i) {
         const std::uint32_t operand = add(expr.operand(i), seen);

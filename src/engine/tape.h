@@ -21,11 +21,11 @@ struct TapeInstruction {
     std::uint32_t a = 0, b = 0, c = 0;
     double value = 0;                      // of a constant; typical, of a uniform or an exposure
     double least = 0, most = 0;            // of a uniform: its range
-    int input = 0;                         // of an input; channel of a lattice
+    int input = 0;                         // of an input; channel of a grid
     bool is_limited = true;                // of an input: within +-kHalfMax. See limits_input()
     std::uint32_t source = 0;              // of a uniform: see simd::UniformPlace
     const Table* table = nullptr;          // of a lookup; owned by the tape
-    const Lattice* lattice = nullptr;      // owned by the tape
+    const Grid* grid = nullptr;            // owned by the tape
     const CompiledCurve* curve = nullptr;  // of a lookup, instead of a table: see fit_curves()
     const ExprNode* node = nullptr;        // where it came from
 };

@@ -30,8 +30,8 @@ Expr rebuild(const Expr& e, const Leaf& leaf, std::unordered_map<const ExprNode*
         for (int i = 0; i < e.operand_count(); ++i) {
             operands.push_back(rebuild(e.operand(i), leaf, done));
         }
-        result = e.op() == ExprOp::lattice
-                     ? interpolate(e.lattice(), e.channel(), operands[0], operands[1], operands[2])
+        result = e.op() == ExprOp::grid
+                     ? interpolate(e.grid(), e.channel(), operands[0], operands[1], operands[2])
                      : make_expr(e.op(), operands, e.table());
         PartNames::move(e, result);
     }
@@ -51,8 +51,8 @@ double evaluate_node(const Expr& e, std::span<const double> inputs,
     for (int i = 0; i < e.operand_count(); ++i) {
         v[static_cast<std::size_t>(i)] = evaluate_node(e.operand(i), inputs, done);
     }
-    const double result = e.op() == ExprOp::lattice
-                              ? (*e.lattice())(e.channel(), v[0], v[1], v[2])
+    const double result = e.op() == ExprOp::grid
+                              ? (*e.grid())(e.channel(), v[0], v[1], v[2])
                               : scalar_op(e.op(), v[0], v[1], v[2], e.table().get());
     done.emplace(e.node(), result);
     return result;
@@ -143,8 +143,8 @@ Expr differentiate(const Expr& e, int index, std::unordered_map<const ExprNode*,
             }
             break;
         }
-        case ExprOp::lattice:
-            throw Error("derivative: a lattice has no derivative expression");
+        case ExprOp::grid:
+            throw Error("derivative: a grid has no derivative expression");
         case ExprOp::floor:
         case ExprOp::less:
         case ExprOp::less_equal:

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "base/format_number.h"
-#include "expr/lattice_place.h"
+#include "expr/grid_place.h"
 #include "expr/node.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/error.h"
@@ -50,23 +50,23 @@ double Table::operator()(double x) const noexcept {
     return samples[i] + (position - static_cast<double>(i)) * (samples[i + 1] - samples[i]);
 }
 
-Lattice::Lattice(int edge, std::function<std::vector<double>()> make)
-    : Lattice(edge, std::move(make), nullptr) {}
+Grid::Grid(int edge, std::function<std::vector<double>()> make)
+    : Grid(edge, std::move(make), nullptr) {}
 
-Lattice::Lattice(int edge, std::function<std::vector<double>()> make,
-                 std::function<std::vector<Expr>()> formula)
+Grid::Grid(int edge, std::function<std::vector<double>()> make,
+           std::function<std::vector<Expr>()> formula)
     : edge_(edge), make_(std::move(make)), formula_(std::move(formula)) {
     if (edge < 2) {
-        throw Error("lattice: edge is " + std::to_string(edge) + "; expected at least 2");
+        throw Error("grid: edge is " + std::to_string(edge) + "; expected at least 2");
     }
 }
 
-const std::vector<double>& Lattice::nodes() const {
+const std::vector<double>& Grid::nodes() const {
     std::call_once(made_, [this] {
         std::vector<double> nodes = make_();
         const auto n = static_cast<std::size_t>(edge_);
         if (nodes.size() != 3 * n * n * n) {
-            throw Error("lattice: it has " + std::to_string(nodes.size()) +
+            throw Error("grid: it has " + std::to_string(nodes.size()) +
                         " numbers; expected 3 of each of " + std::to_string(edge_) + "^3 nodes");
         }
         nodes_ = std::move(nodes);
@@ -75,22 +75,22 @@ const std::vector<double>& Lattice::nodes() const {
     return nodes_;
 }
 
-std::vector<Expr> Lattice::formula() const { return formula_(); }
+std::vector<Expr> Grid::formula() const { return formula_(); }
 
-double Lattice::operator()(int channel, double r, double g, double b) const {
-    const LatticePlace t(edge_, {r, g, b});
+double Grid::operator()(int channel, double r, double g, double b) const {
+    const GridPlace t(edge_, {r, g, b});
     const auto c = static_cast<std::size_t>(channel);
     const std::vector<double>& node = nodes();
     return t.interpolate(&node[c]);
 }
 
-std::array<double, 3> Lattice::operator()(double r, double g, double b) const {
+std::array<double, 3> Grid::operator()(double r, double g, double b) const {
     return {(*this)(0, r, g, b), (*this)(1, r, g, b), (*this)(2, r, g, b)};
 }
 
-std::array<double, 3> Lattice::gradient(int channel, double r, double g, double b) const {
+std::array<double, 3> Grid::gradient(int channel, double r, double g, double b) const {
     const std::array<double, 3> at = {r, g, b};
-    return LatticePlace(edge_, at).gradient(&nodes()[static_cast<std::size_t>(channel)], edge_, at);
+    return GridPlace(edge_, at).gradient(&nodes()[static_cast<std::size_t>(channel)], edge_, at);
 }
 
 namespace {
@@ -98,9 +98,9 @@ namespace {
 /// Key of a shared node. Constants are compared by their bits, because 0 and -0 differ.
 struct NodeKey {
     ExprOp op;
-    std::uint64_t bits;  // of the constant, or the input's index, or the lattice's channel
+    std::uint64_t bits;  // of the constant, or the input's index, or the grid's channel
     std::array<const ExprNode*, 3> operands;
-    const void* data;  // table or lattice
+    const void* data;  // table or grid
     std::string name;  // of the uniform
     friend bool operator==(const NodeKey&, const NodeKey&) = default;
 };
@@ -130,8 +130,8 @@ SharedNodes& shared_nodes() {
 
 std::shared_ptr<const ExprNode> share(ExprNode node) {
     NodeKey key{node.op, 0, {}, node.table.get(), node.name};
-    if (node.lattice) key.data = node.lattice.get();
-    key.bits = node.op == ExprOp::input || node.op == ExprOp::lattice
+    if (node.grid) key.data = node.grid.get();
+    key.bits = node.op == ExprOp::input || node.op == ExprOp::grid
                    ? static_cast<std::uint64_t>(node.input)
                    : std::bit_cast<std::uint64_t>(node.value);
     for (std::size_t i = 0; i < node.operands.size(); ++i)
@@ -234,7 +234,7 @@ double Expr::value() const noexcept { return node_->value; }
 int Expr::input_index() const noexcept { return node_->input; }
 const std::string& Expr::uniform_name() const noexcept { return node_->name; }
 const std::shared_ptr<const Table>& Expr::table() const noexcept { return node_->table; }
-const std::shared_ptr<const Lattice>& Expr::lattice() const noexcept { return node_->lattice; }
+const std::shared_ptr<const Grid>& Expr::grid() const noexcept { return node_->grid; }
 int Expr::channel() const noexcept { return node_->input; }
 int Expr::operand_count() const noexcept { return static_cast<int>(node_->operands.size()); }
 Expr Expr::operand(int i) const { return node_->operands[static_cast<std::size_t>(i)]; }
@@ -302,15 +302,15 @@ Expr lookup(std::shared_ptr<const Table> table, const Expr& index) {
     return make_expr(ExprOp::lookup, std::array{index}, std::move(table));
 }
 
-Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r, const Expr& g,
+Expr interpolate(std::shared_ptr<const Grid> grid, int channel, const Expr& r, const Expr& g,
                  const Expr& b) {
     if (r.is_constant() && g.is_constant() && b.is_constant())
-        return (*lattice)(channel, r.value(), g.value(), b.value());
+        return (*grid)(channel, r.value(), g.value(), b.value());
     ExprNode node;
-    node.op = ExprOp::lattice;
+    node.op = ExprOp::grid;
     node.input = channel;
     node.operands = {r, g, b};
-    node.lattice = std::move(lattice);
+    node.grid = std::move(grid);
     return Expr(share(std::move(node)));
 }
 

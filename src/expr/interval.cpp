@@ -35,7 +35,7 @@ Interval power_of(const Interval& base, const Interval& exponent) {
 }  // namespace
 
 Interval interval_of(ExprOp op, const Interval& a, const Interval& b, const Interval& c,
-                     const Table* table, const Lattice* lattice) {
+                     const Table* table, const Grid* grid) {
     const auto rising = [&] {
         return hull({scalar_op(op, a.lo, 0, 0, table), scalar_op(op, a.hi, 0, 0, table)});
     };
@@ -87,8 +87,8 @@ Interval interval_of(ExprOp op, const Interval& a, const Interval& b, const Inte
         }
         case ExprOp::atan2:
             return {-4, 4};
-        case ExprOp::lattice: {
-            const std::vector<double>& nodes = lattice->nodes();
+        case ExprOp::grid: {
+            const std::vector<double>& nodes = grid->nodes();
             const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
             return {*lo, *hi};
         }

@@ -16,10 +16,10 @@ struct Interval {
 /// Interval of the result of an operation for operands in a, b and c; infinite if unknown. Not for
 /// constants, inputs and uniforms.
 /// @param table    for a lookup
-/// @param lattice  for a Lattice
-/// @throws Error   as Lattice::nodes()
+/// @param grid  for a Grid
+/// @throws Error   as Grid::nodes()
 [[nodiscard]] TONEWRIGHT_API Interval interval_of(ExprOp op, const Interval& a, const Interval& b,
                                                   const Interval& c, const Table* table,
-                                                  const Lattice* lattice);
+                                                  const Grid* grid);
 
 TONEWRIGHT_NAMESPACE_END

@@ -91,10 +91,9 @@ Text print(const Expr& e, std::span<const std::string> names) {
             return {"lookup[" + std::to_string(e.table()->samples.size()) +
                         (e.table()->positions.empty() ? "](" : " uneven](") + part(0).text + ")",
                     kAtom};
-        case ExprOp::lattice:
+        case ExprOp::grid:
             return call(
-                ("lattice[" + std::to_string(e.lattice()->edge()) + "^3]." + "rgb"[e.channel()])
-                    .c_str());
+                ("grid[" + std::to_string(e.grid()->edge()) + "^3]." + "rgb"[e.channel()]).c_str());
     }
     return {"", kAtom};
 }

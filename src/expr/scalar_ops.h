@@ -19,7 +19,7 @@ inline constexpr ScalarOperation kScalarOperations[] = {
     {"divide", 2},      {"minimum", 2},    {"maximum", 2}, {"power", 2},    {"atan2", 2},
     {"less", 2},        {"less_equal", 2}, {"equal", 2},   {"negate", 1},   {"absolute", 1},
     {"square_root", 1}, {"exp2", 1},       {"log2", 1},    {"sine", 1},     {"cosine", 1},
-    {"floor", 1},       {"select", 3},     {"lookup", 1},  {"lattice", 3},  {"uniform", 0}};
+    {"floor", 1},       {"select", 3},     {"lookup", 1},  {"grid", 3},     {"uniform", 0}};
 static_assert(std::size(kScalarOperations) == static_cast<std::size_t>(ExprOp::uniform) + 1);
 
 [[nodiscard]] constexpr const char* name_of(ExprOp op) noexcept {
@@ -29,7 +29,7 @@ static_assert(std::size(kScalarOperations) == static_cast<std::size_t>(ExprOp::u
     return kScalarOperations[static_cast<std::size_t>(op)].operands;
 }
 
-/// Defines each operation in double; Lattice::operator() defines its own. Constant folding,
+/// Defines each operation in double; Grid::operator() defines its own. Constant folding,
 /// evaluate() and the reference engine use it.
 inline double scalar_op(ExprOp op, double a, double b, double c, const Table* table) noexcept {
     switch (op) {
@@ -78,7 +78,7 @@ inline double scalar_op(ExprOp op, double a, double b, double c, const Table* ta
         case ExprOp::constant:
         case ExprOp::input:
         case ExprOp::uniform:
-        case ExprOp::lattice:
+        case ExprOp::grid:
             break;
     }
     return a;

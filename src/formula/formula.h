@@ -75,7 +75,7 @@ struct FormulaText {
 /// parse_formula() reads them back as the same expressions. Parts with a name (PartNames) become
 /// temporaries, however often they are used.
 /// @param inputs  their names
-/// @throws Error  an expression has a table, a lattice or a number that is not finite, or a uniform
+/// @throws Error  an expression has a table, a grid or a number that is not finite, or a uniform
 ///                has a name that no formula can use
 [[nodiscard]] TONEWRIGHT_API FormulaText formula_text(Span<const Expr> exprs,
                                                       const std::vector<std::string>& inputs);

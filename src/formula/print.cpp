@@ -153,7 +153,7 @@ class Printer {
                 return call("floor");
             case ExprOp::lookup:
                 throw Error("it has a table of measured or computed values");
-            case ExprOp::lattice:
+            case ExprOp::grid:
                 throw Error("it has a 3D table");
         }
         return {};

@@ -260,7 +260,7 @@ class PictureWriter::LightLevelMeter {
         }
     }
     [[nodiscard]] LightLevels levels() const {
-        return {largest_ * kReferenceWhite, sum_ / std::max(count_, 1.0) * kReferenceWhite};
+        return {largest_ * kUnitLuminance, sum_ / std::max(count_, 1.0) * kUnitLuminance};
     }
 
   private:

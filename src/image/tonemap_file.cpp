@@ -45,7 +45,7 @@ void say_how(ImageSpec& picture, const TonemapOptions& options, const std::strin
     const std::string op = operator_text(options.op);
     const std::string exposure = shortest(options.exposure_stops);
     std::string display = options.display;
-    if (options.reference_white != kReferenceWhite)
+    if (options.reference_white != kUnitLuminance)
         display += fmt::format(", reference white {}", shortest(options.reference_white));
     if (options.input_units == InputUnits::luminance) display += ", input in cd/m2";
     const std::string mix = options.mix == 1 ? "" : ", mix " + shortest(options.mix);

@@ -578,7 +578,7 @@ class Maker {
         const bool is_hdr = structure_.peak > 1;
         const double straight = is_hdr ? 1e-3 : 2e-4;
         const auto code = [&](const Expr& x) {
-            return is_hdr ? pq_encode_nits(kReferenceWhite * structure_.peak * x)
+            return is_hdr ? pq_encode_nits(kUnitLuminance * structure_.peak * x)
                           : pow(x, kCodePower);
         };
         const Expr of_input = code(Expr::input());

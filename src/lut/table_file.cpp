@@ -48,7 +48,7 @@ TableFile read_cube(const std::string& path, const std::string& bytes) {
     }
     if (cube.cube.size > 0) {
         add_range(table.stages, cube.cube.lo, cube.cube.hi);
-        table.stages.emplace_back(lattice_of(cube.cube.size, cube.cube.rows));
+        table.stages.emplace_back(grid_of(cube.cube.size, cube.cube.rows));
     }
     table.note = cube.note;
     return table;
@@ -72,7 +72,7 @@ TableFile read_device_link(const std::string& path, const std::string& bytes) {
         return std::pair(std::move(at), std::move(out));
     };
     TableFile table;
-    const LatticeStage stage = lattice_of(n, run(n).second);
+    const GridStage stage = grid_of(n, run(n).second);
     table.stages.emplace_back(stage);
     // The nodes would lose curves before its table. 16 bits round nodes, position and result by
     // 1.5e-5 each.
@@ -80,8 +80,8 @@ TableFile read_device_link(const std::string& path, const std::string& bytes) {
     const auto [at, wanted] = run(18);
     for (std::size_t i = 0; i < at.size(); i += 3) {
         const std::array<double, 3> is =
-            (*stage.lattice)(static_cast<double>(at[i]), static_cast<double>(at[i + 1]),
-                             static_cast<double>(at[i + 2]));
+            (*stage.grid)(static_cast<double>(at[i]), static_cast<double>(at[i + 1]),
+                          static_cast<double>(at[i + 2]));
         for (std::size_t c = 0; c < 3; ++c) {
             if (std::fabs(is[c] - static_cast<double>(wanted[i + c])) <= kRounding) continue;
             throw FileError("read: " + path +
@@ -134,8 +134,8 @@ std::string description_of(const Pipeline& stages) {
     std::string text;
     for (const Stage& stage : stages) {
         std::string part;
-        if (const auto* lattice = std::get_if<LatticeStage>(&stage))
-            part = fmt::format("3D LUT of {0} x {0} x {0} nodes", lattice->lattice->edge());
+        if (const auto* grid = std::get_if<GridStage>(&stage))
+            part = fmt::format("3D LUT of {0} x {0} x {0} nodes", grid->grid->edge());
         const auto* curve = std::get_if<CurveStage>(&stage);
         if (curve && curve->f[0].op() == ExprOp::lookup)
             part = fmt::format("1D table of {} entries", curve->f[0].table()->samples.size());
@@ -162,7 +162,7 @@ std::string title_of(std::string_view text) {
 
 }  // namespace
 
-LatticeStage lattice_of(int edge, const std::vector<float>& nodes) {
+GridStage grid_of(int edge, const std::vector<float>& nodes) {
     if (edge > kLargestEdge) {
         throw Error(fmt::format("3D LUT has {} nodes a side; expected at most {} of an operator",
                                 edge, kLargestEdge));
@@ -175,7 +175,7 @@ LatticeStage lattice_of(int edge, const std::vector<float>& nodes) {
             (*turned)[3 * i + c] = static_cast<double>(nodes[3 * from + c]);
     }
     return {Expr::input(),
-            std::make_shared<const Lattice>(edge, [turned] { return std::move(*turned); })};
+            std::make_shared<const Grid>(edge, [turned] { return std::move(*turned); })};
 }
 
 CurveStage tables_of(const std::vector<float>& rows) {
@@ -235,7 +235,7 @@ TableFile table_file_of(const Lut& lut, const std::string& path) {
     TableFile table;
     try {
         if (lut.dimension == 3) {
-            table.stages.emplace_back(lattice_of(lut.size, lut.values));
+            table.stages.emplace_back(grid_of(lut.size, lut.values));
         } else {
             std::vector<float> rows;
             const std::size_t copies = lut.channels == 1 ? 3 : 1;

@@ -18,7 +18,7 @@ inline constexpr std::size_t kLargestLutFile = std::size_t{128} << 20U;
 /// A 3D LUT over [0, 1].
 /// @param nodes  RGB triplets, red fastest
 /// @throws Error  more than 129 nodes a side, which no reader supports
-[[nodiscard]] TONEWRIGHT_API LatticeStage lattice_of(int edge, const std::vector<float>& nodes);
+[[nodiscard]] TONEWRIGHT_API GridStage grid_of(int edge, const std::vector<float>& nodes);
 /// A 1D table of each channel over [0, 1], linear between its entries.
 /// @param rows  RGB triplets
 [[nodiscard]] TONEWRIGHT_API CurveStage tables_of(const std::vector<float>& rows);

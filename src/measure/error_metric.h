@@ -33,11 +33,11 @@ struct ErrorStats {
 [[nodiscard]] TONEWRIGHT_API std::vector<double> delta_e_itp(const Display& display,
                                                              std::span<const double> code_a,
                                                              std::span<const double> code_b,
-                                                             double unit_nits = kReferenceWhite);
+                                                             double unit_nits = kUnitLuminance);
 /// The same in two steps, where one side is compared with many: I of all colors, then Ct, then Cp.
 [[nodiscard]] TONEWRIGHT_API std::vector<double> ictcp_of_codes(const Display& display,
                                                                 std::span<const double> code,
-                                                                double unit_nits = kReferenceWhite);
+                                                                double unit_nits = kUnitLuminance);
 [[nodiscard]] TONEWRIGHT_API std::vector<double> delta_e_itp(std::span<const double> ictcp_a,
                                                              std::span<const double> ictcp_b);
 

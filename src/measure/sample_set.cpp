@@ -33,7 +33,7 @@ SampleSet make_sample_set(const InputSpace& input, const SampleSetOptions& optio
         set.add(gray, gray, gray, SampleKind::gray);
     }
 
-    const int n = options.lattice_edge;
+    const int n = options.gamut_grid_size;
     for (const Primaries& gamut : {kRec709, kRec2020, kAP1}) {
         const Matrix3 to_input = rgb_to_rgb(gamut, input.primaries);
         for (const double exposure : {-6.0, -2.0, 0.0, 3.0, 6.0}) {
@@ -42,7 +42,7 @@ SampleSet make_sample_set(const InputSpace& input, const SampleSetOptions& optio
                 for (int g = 0; g < n; ++g) {
                     for (int b = 0; b < n; ++b) {
                         const Vector3 v = multiply(to_input, Vector3{gain * r, gain * g, gain * b});
-                        set.add(v[0], v[1], v[2], SampleKind::lattice);
+                        set.add(v[0], v[1], v[2], SampleKind::grid);
                     }
                 }
             }

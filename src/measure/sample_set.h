@@ -12,7 +12,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Part of the sample set that a color belongs to.
 enum class SampleKind : unsigned char {
     gray,        // R = G = B, -12..+12 stops around 0.18, and black
-    lattice,     // gamut lattices of Rec.709, Rec.2020 and AP1 at five exposures
+    grid,        // gamut grids of Rec.709, Rec.2020 and AP1 at five exposures
     random,      // log-uniform, 2^-16..2^12 per channel, a tenth with a channel at 0
     near_black,  // down to denormals
     negative,    // one or two channels below 0, up to mixed signs of thousands
@@ -32,7 +32,7 @@ struct TONEWRIGHT_API SampleSet {
 };
 
 struct SampleSetOptions {
-    int lattice_edge = 33;
+    int gamut_grid_size = 33;
     std::size_t random_count = 100000;
 };
 

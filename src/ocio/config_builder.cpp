@@ -254,7 +254,7 @@ std::string describe(const ConfigModel::View& view, const DisplayedView& shown) 
     const DisplayLimit limit = display_limit(shown.op, *shown.display);
     if (!shown.display->is_hdr || limit.peak <= 1)
         return view.description + blender_difference(shown.op);
-    const double peak = std::min(limit.peak * kReferenceWhite, shown.display->peak);
+    const double peak = std::min(limit.peak * kUnitLuminance, shown.display->peak);
     return fmt::format("{} Up to {:g} cd/m2, limited to {}.{}", view.description, peak,
                        limit.primaries.name, blender_difference(shown.op));
 }
@@ -349,7 +349,7 @@ std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
         if (i == forms.size()) {
             std::string where(limit.primaries.name);
             // Named after the nominal peak, which single channels may exceed.
-            const double peak = std::min(limit.peak * kReferenceWhite, display->peak);
+            const double peak = std::min(limit.peak * kUnitLuminance, display->peak);
             if (limit.peak > 1) where += fmt::format(", {:g} nit", peak);
             const std::string name = view.name + " (" + where + ")";
             const bool is_taken = std::any_of(forms.begin(), forms.end(),

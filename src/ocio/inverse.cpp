@@ -160,7 +160,7 @@ std::optional<LoweredOps> invert_lowered(const Pipeline& forward, double peak) {
 bool needs_cube(const Pipeline& stages) {
     return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
         const auto* map = std::get_if<CrossTalkStage>(&stage);
-        return std::holds_alternative<LatticeStage>(stage) || (map && !find_fixed_functions(*map));
+        return std::holds_alternative<GridStage>(stage) || (map && !find_fixed_functions(*map));
     });
 }
 

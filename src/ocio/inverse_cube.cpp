@@ -44,16 +44,16 @@ Expr light_of(const Expr& code) {
 /// Position on the axes: nearly perceptual, for SDR and HDR displays.
 Expr place_of(const Expr& light, double peak) {
     if (peak <= 1) return pow(max(light, 0), 1 / 2.4);
-    const Expr code = pq_encode_nits(Expr::input() * kReferenceWhite);
+    const Expr code = pq_encode_nits(Expr::input() * kUnitLuminance);
     const double black = evaluate(code, 0);
-    return (pq_encode_nits(max(light, 0) * kReferenceWhite) - black) /
+    return (pq_encode_nits(max(light, 0) * kUnitLuminance) - black) /
            (evaluate(code, peak) - black);
 }
 Expr light_at(const Expr& place, double peak) {
     if (peak <= 1) return pow(max(place, 0), 2.4);
-    const Expr code = pq_encode_nits(Expr::input() * kReferenceWhite);
+    const Expr code = pq_encode_nits(Expr::input() * kUnitLuminance);
     const double black = evaluate(code, 0);
-    return pq_decode_nits(black + place * (evaluate(code, peak) - black)) / kReferenceWhite;
+    return pq_decode_nits(black + place * (evaluate(code, peak) - black)) / kUnitLuminance;
 }
 
 }  // namespace
@@ -80,10 +80,10 @@ Pipeline sampled_inverse(const Pipeline& back, double peak) {
             nodes.insert(nodes.end(), {planes[0][i], planes[1][i], planes[2][i]});
         return nodes;
     };
-    return {ClampStage{0, peak},
-            LatticeStage{place_of(Expr::input(), peak),
-                         std::make_shared<const Lattice>(kEdge, make_nodes)},
-            curve_stage(light_of(Expr::input()))};
+    return {
+        ClampStage{0, peak},
+        GridStage{place_of(Expr::input(), peak), std::make_shared<const Grid>(kEdge, make_nodes)},
+        curve_stage(light_of(Expr::input()))};
 }
 
 Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, double peak) {
@@ -98,10 +98,10 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
                    primaries == b.primaries && peak == b.peak;
         }
     };
-    static BoundedCache<Key, Lattice> cache(64);  // of 0.9 MB each
+    static BoundedCache<Key, Grid> cache(64);  // of 0.9 MB each
     const Expr x = Expr::input();
     const Expr place = place_of(x, peak);
-    // Lattice computes its nodes on demand.
+    // Grid computes its nodes on demand.
     const auto cube = cache.get({compose(forward), primaries, peak}, [&] {
         const auto make_nodes = [=] {
             InverseCubeProblem problem;
@@ -125,9 +125,9 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
                 code = std::clamp(code, -1.0, 1.0);
             return nodes;
         };
-        return Lattice(kFittedEdge, make_nodes);
+        return Grid(kFittedEdge, make_nodes);
     });
-    return {ClampStage{0, peak}, LatticeStage{place, cube}, ClampStage{0, 1},
+    return {ClampStage{0, peak}, GridStage{place, cube}, ClampStage{0, 1},
             curve_stage(light_of(x))};
 }
 

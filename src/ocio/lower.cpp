@@ -181,14 +181,14 @@ class Lowering {
         domain_ = {};
     }
 
-    void lower(const LatticeStage& stage) {
-        // OCIO clamps the input of a 3D LUT to [0, 1] like Lattice; a half LUT would round that
+    void lower(const GridStage& stage) {
+        // OCIO clamps the input of a 3D LUT to [0, 1] like Grid; a half LUT would round that
         // corner.
         lower(curve_stage(stage.shaper));
         flush_curves();
-        const std::vector<double>& nodes = stage.lattice->nodes();
-        emit(Lut3DOp{stage.lattice->edge(), {nodes.begin(), nodes.end()}},
-             std::to_string(stage.lattice->edge()) + "^3 3D LUT");
+        const std::vector<double>& nodes = stage.grid->nodes();
+        emit(Lut3DOp{stage.grid->edge(), {nodes.begin(), nodes.end()}},
+             std::to_string(stage.grid->edge()) + "^3 3D LUT");
         // Powers of two, so that similar 3D LUTs share the tables after them.
         const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
         const auto outwards = [](double x) {

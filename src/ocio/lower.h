@@ -38,7 +38,7 @@ struct LowerOptions {
 /// hue adjustment (a 3D LUT if the curve falls); a hexcone stage -> HSV, half LUTs of logarithms
 /// with matrices that add one channel to the other, and inverse HSV; a channel-mixing stage ->
 /// OpenColorIO's fixed functions if it equals some, otherwise a shaper with a linear toe, a
-/// tetrahedral 3D LUT of unclipped smooth output, and the decoding; a Lattice -> a half LUT of its
+/// tetrahedral 3D LUT of unclipped smooth output, and the decoding; a Grid -> a half LUT of its
 /// shaper and the same 3D LUT. Native log, power and sRGB operations are not used: OCIO builds with
 /// SSE evaluate them with 15 bits, and OCIO's sRGB is 1e-5 off IEC 61966-2-1.
 ///

@@ -519,8 +519,8 @@ std::vector<ConfigModel::Look> choose_looks(const ConfigOptions& options,
 
 std::string config_view_name(const std::string& name, const ResolvedOperator& op,
                              const Display& display) {
-    const double peak = std::min(op.peak() * kReferenceWhite, display.peak);
-    if (!display.is_hdr || peak <= kReferenceWhite) return name;
+    const double peak = std::min(op.peak() * kUnitLuminance, display.peak);
+    if (!display.is_hdr || peak <= kUnitLuminance) return name;
     return name + fmt::format(" - HDR {:g} nits", peak);
 }
 

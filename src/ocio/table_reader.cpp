@@ -95,7 +95,7 @@ class Converter {
         }
         require_finite(nodes);
         try {
-            table_.stages.emplace_back(lattice_of(static_cast<int>(n), nodes));
+            table_.stages.emplace_back(grid_of(static_cast<int>(n), nodes));
         } catch (const Error& e) {
             refuse(e.what());
         }

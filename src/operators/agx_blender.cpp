@@ -13,7 +13,7 @@
 // Out       display-linear RGB. range=sdr: primaries of `limit`, 1.0 = display peak; [0, 1]. The
 //           source stores codes of a 2.4 power, which are decoded. range=hdr: Rec.2020, colors
 //           within P3, 1.0 = 100 cd/m2; [0, 10].
-// Kind      method=lattice: 57^3 nodes, then a power, or the inverse of an HLG display. Formula:
+// Kind      method=grid: 57^3 nodes, then a power, or the inverse of an HLG display. Formula:
 //           3D, with c the scene color in the inset and f(c) its log, sigmoid and 2.4 power:
 //             0.4 f(c) + 0.6 (f(min) + (f(max) - f(min)) (c - min)/(max - min)).
 //           The source rotates the HSV hue of f(c) towards the hue of c by 60 % of their
@@ -35,7 +35,7 @@
 //           formula uses exact matrices; the generator's have a white of (0.31271, 0.32902). HLG
 //           codes are decoded with the exact inverse of OpenColorIO's DISPLAY -
 //           CIE-XYZ-D65_to_REC.2100-HLG-1000nit.
-// Check     (0.8, 0.1, 0.05) in Rec.709 -> red 0.597988220 (formula), 0.595668176 (lattice)
+// Check     (0.8, 0.1, 0.05) in Rec.709 -> red 0.597988220 (formula), 0.595668176 (grid)
 //           (check_values.json).
 #include <cmath>
 #include <memory>
@@ -306,7 +306,7 @@ T light_at(const T& place) {
 /// A 3D LUT, computed and cached at the first lookup; and the formula of its nodes.
 /// @param node  a functor: Rec.2020 -> color of the 3D LUT, for double and for Expr
 template <class Node>
-std::shared_ptr<const Lattice> make_cube(int edge, const Node& node) {
+std::shared_ptr<const Grid> make_cube(int edge, const Node& node) {
     const auto nodes = [edge, node] {
         const auto n = static_cast<std::size_t>(edge);
         const Matrix3 to_rec2020 = multiply(kXyzToRec2020, kEGamutToXyz);
@@ -331,7 +331,7 @@ std::shared_ptr<const Lattice> make_cube(int edge, const Node& node) {
         const Color<Expr> color = node(times(multiply(kXyzToRec2020, kEGamutToXyz), light));
         return std::vector<Expr>(color.begin(), color.end());
     };
-    return std::make_shared<const Lattice>(edge, nodes, formula);
+    return std::make_shared<const Grid>(edge, nodes, formula);
 }
 
 constexpr int kEdge = 57;
@@ -418,7 +418,7 @@ struct RailNode {
     }
 };
 
-std::shared_ptr<const Lattice> sdr_lattice(const std::string& limit) {
+std::shared_ptr<const Grid> sdr_grid(const std::string& limit) {
     if (limit == "rec709") {
         static const auto rec709 = make_cube(kEdge, SdrNode(kRec709, &kXyzToRec709));
         return rec709;
@@ -430,13 +430,13 @@ std::shared_ptr<const Lattice> sdr_lattice(const std::string& limit) {
     static const auto rec2020 = make_cube(kEdge, SdrNode(kRec2020, nullptr));
     return rec2020;
 }
-std::shared_ptr<const Lattice> hdr_lattice() {
-    static const auto lattice = make_cube(kEdge, HdrNode{});
-    return lattice;
+std::shared_ptr<const Grid> hdr_grid() {
+    static const auto grid = make_cube(kEdge, HdrNode{});
+    return grid;
 }
-std::shared_ptr<const Lattice> rail_lattice() {
-    static const auto lattice = make_cube(kRailEdge, RailNode{});
-    return lattice;
+std::shared_ptr<const Grid> rail_grid() {
+    static const auto grid = make_cube(kRailEdge, RailNode{});
+    return grid;
 }
 
 /// log2 of scene values as positions on the axes: mid gray is at 0.4.
@@ -444,10 +444,10 @@ Expr log_encode(const Expr& x) { return (log2(x) - kLowest) / (kHighest - kLowes
 Expr log_decode(const Expr& v) { return exp2(kLowest + (kHighest - kLowest) * v); }
 
 /// Rec.2020 -> color of the 3D LUT.
-Pipeline through(const std::shared_ptr<const Lattice>& lattice) {
+Pipeline through(const std::shared_ptr<const Grid>& grid) {
     return {MatrixStage{rec2020_to_e_gamut(), "to_e_gamut"},
             ClampStage{std::exp2(kLowest), std::exp2(kHighest)},
-            LatticeStage{log_encode(Expr::input()), lattice}};
+            GridStage{log_encode(Expr::input()), grid}};
 }
 
 /// HLG codes -> display-linear Rec.2020, 1 = 100 cd/m2, on a display of 1000 cd/m2.
@@ -527,11 +527,11 @@ Pipeline look_stages(const std::string& look) {
 }
 
 /// Rec.2020 -> Rec.2020.
-Pipeline apply_look(const std::string& look, bool is_lattice) {
+Pipeline apply_look(const std::string& look, bool is_grid) {
     if (look.empty()) return {};
     Pipeline rail = {CrossTalkStage{scene_rail(inputs(), kRailWeights)}};
-    if (is_lattice) {
-        rail = through(rail_lattice()) +
+    if (is_grid) {
+        rail = through(rail_grid()) +
                Pipeline{curve_stage(log_decode(Expr::input())),
                         MatrixStage{inverse(rec2020_to_e_gamut()), "from_e_gamut"}};
     }
@@ -611,11 +611,11 @@ std::vector<Operator> define_agx_blender() {
                      "colors far outside Rec.709 suffer from cancellation; formula: a 3D LUT "
                      "smooths the corners of the guard rails"};
     op.build = [](const Params& p) -> Pipeline {
-        const bool is_lattice = p.choice("method") == "lattice";
-        const Pipeline look = apply_look(p.look(), is_lattice);
-        if (is_lattice) {
-            if (is_hdr(p)) return look + through(hdr_lattice()) + hlg_display();
-            return look + through(sdr_lattice(p.choice("limit"))) +
+        const bool is_grid = p.choice("method") == "lattice";
+        const Pipeline look = apply_look(p.look(), is_grid);
+        if (is_grid) {
+            if (is_hdr(p)) return look + through(hdr_grid()) + hlg_display();
+            return look + through(sdr_grid(p.choice("limit"))) +
                    Pipeline{curve_stage(pow(Expr::input(), 2.4))};
         }
         return is_hdr(p) ? hdr_formula(look) : sdr_formula(look, limiting_primaries(p, kRec709));

@@ -46,7 +46,7 @@ struct TransferRow {
     Expr (*decode)(const Expr&);
 };
 
-Expr pq_light(const Expr& code) { return pq_decode_nits(code) / kReferenceWhite; }
+Expr pq_light(const Expr& code) { return pq_decode_nits(code) / kUnitLuminance; }
 Expr log_100_decode(const Expr& code) { return log_range_decode(code, 2); }
 Expr log_316_decode(const Expr& code) { return log_range_decode(code, 2.5); }
 

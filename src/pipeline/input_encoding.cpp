@@ -77,7 +77,7 @@ constexpr double kHlgPeak = 1000;  // ITU-R BT.2100-2, the display with a system
 /// "name", or "name:WHITE".
 double parse_white(std::string_view text, std::string_view name, double peak) {
     const std::size_t colon = text.find(':');
-    if (colon == std::string_view::npos) return kReferenceWhite;
+    if (colon == std::string_view::npos) return kUnitLuminance;
     double white = 0;
     if (!parse_number(text.substr(colon + 1), white) || !(white > 0) || white > peak) {
         refuse(text, std::string(name) + ":WHITE, the cd/m2 of scene-linear 1.0 in (0, " +

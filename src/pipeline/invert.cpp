@@ -257,7 +257,7 @@ class Inversion {
 
     void invert(const HexconeStage& s) { refuse(s); }
     void invert(const CrossTalkStage& s) { refuse(s); }
-    void invert(const LatticeStage& s) { refuse(s); }
+    void invert(const GridStage& s) { refuse(s); }
 
     std::size_t number_ = 0;
     std::array<Range, 3> domain_ = {kAnything, kAnything, kAnything};

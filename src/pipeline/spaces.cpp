@@ -67,8 +67,8 @@ constexpr double kPqLargest = 10000;  // SMPTE ST 2084
 Display pq_display(std::string id, std::string title, std::vector<std::string> aliases,
                    const Primaries& primaries, std::string source) {
     const Expr x = Expr::input(0);
-    const Expr encode = pq_encode_nits(x * kReferenceWhite);
-    const Expr decode = pq_decode_nits(x) / kReferenceWhite;
+    const Expr encode = pq_encode_nits(x * kUnitLuminance);
+    const Expr decode = pq_decode_nits(x) / kUnitLuminance;
     return {.id = std::move(id),
             .title = std::move(title),
             .aliases = std::move(aliases),
@@ -78,10 +78,10 @@ Display pq_display(std::string id, std::string title, std::vector<std::string> a
             .source = std::move(source),
             .is_hdr = true,
             .peak = kHdrPeak,
-            .largest_light = kPqLargest / kReferenceWhite};
+            .largest_light = kPqLargest / kUnitLuminance};
 }
 
-constexpr double kHlgUnit = kHdrPeak / kReferenceWhite;
+constexpr double kHlgUnit = kHdrPeak / kUnitLuminance;
 constexpr Vector3 kBt2100Luminance = {0.2627, 0.6780, 0.0593};  // ITU-R BT.2100-2, table 5
 
 Display hlg_display() {
@@ -189,7 +189,7 @@ std::optional<Expr> interop_curve(const std::string& curve, const std::string& p
     const Expr x = Expr::input();
     if (curve == "srgb") return srgb_decode(x);
     if (curve == "srgbe") return select(less(x, 0), -srgb_decode(-x), srgb_decode(x));
-    if (curve == "pq") return pq_decode_nits(x) / kReferenceWhite;
+    if (curve == "pq") return pq_decode_nits(x) / kUnitLuminance;
     int tenths = 0;
     const char* const end = curve.data() + curve.size();
     if (curve.size() != 3 || curve.front() != 'g') return std::nullopt;

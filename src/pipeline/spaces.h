@@ -20,7 +20,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] SourceColor color_of_display(const Display& display);
 
 /// HLG code values -> light of a display of 1000 cd/m2 (ITU-R BT.2100-2, table 5), where 1.0 is
-/// kReferenceWhite cd/m2.
+/// kUnitLuminance cd/m2.
 /// @param luminance  weights of the channels
 [[nodiscard]] Pipeline hlg_display_decode(const Vector3& luminance);
 

@@ -48,7 +48,7 @@ std::string_view stage_kind(const Stage& stage) {
                                  [](const HexconeStage&) { return "hexcone"; },
                                  [](const ClampStage&) { return "clamp"; },
                                  [](const CrossTalkStage&) { return "cross-talk"; },
-                                 [](const LatticeStage&) { return "lattice"; }},
+                                 [](const GridStage&) { return "grid"; }},
                       stage);
 }
 
@@ -60,7 +60,7 @@ bool is_identity(const Stage& stage) {
                    [](const ToneScaleStage&) { return false; },
                    [](const HuePreservingStage& s) { return same(s.f, input0()); },
                    [](const HexconeStage&) { return false; },
-                   [](const LatticeStage&) { return false; },
+                   [](const GridStage&) { return false; },
                    [](const ClampStage& s) { return s.lo == -kInfinity && s.hi == kInfinity; },
                    [](const CrossTalkStage& s) {
                        return same(s.f[0], Expr::input(0)) && same(s.f[1], Expr::input(1)) &&
@@ -72,27 +72,28 @@ bool is_identity(const Stage& stage) {
 bool mixes_channels(const Stage& stage) {
     if (is_identity(stage)) return false;
     return std::visit(
-        Overloaded{
-            [](const MatrixStage& s) {
-                for (std::size_t i = 0; i < 3; ++i) {
-                    for (std::size_t j = 0; j < 3; ++j) {
-                        if (i != j && s.m[i][j] != 0) return true;
-                    }
-                }
-                return false;
-            },
-            [](const CurveStage&) { return false; }, [](const ToneScaleStage&) { return true; },
-            [](const HuePreservingStage&) { return true; },
-            [](const HexconeStage&) { return true; }, [](const LatticeStage&) { return true; },
-            [](const ClampStage&) { return false; },
-            [](const CrossTalkStage& s) {
-                for (int i = 0; i < 3; ++i) {
-                    for (int j = 0; j < 3; ++j) {
-                        if (i != j && depends_on(s.f[static_cast<std::size_t>(i)], j)) return true;
-                    }
-                }
-                return false;
-            }},
+        Overloaded{[](const MatrixStage& s) {
+                       for (std::size_t i = 0; i < 3; ++i) {
+                           for (std::size_t j = 0; j < 3; ++j) {
+                               if (i != j && s.m[i][j] != 0) return true;
+                           }
+                       }
+                       return false;
+                   },
+                   [](const CurveStage&) { return false; },
+                   [](const ToneScaleStage&) { return true; },
+                   [](const HuePreservingStage&) { return true; },
+                   [](const HexconeStage&) { return true; }, [](const GridStage&) { return true; },
+                   [](const ClampStage&) { return false; },
+                   [](const CrossTalkStage& s) {
+                       for (int i = 0; i < 3; ++i) {
+                           for (int j = 0; j < 3; ++j) {
+                               if (i != j && depends_on(s.f[static_cast<std::size_t>(i)], j))
+                                   return true;
+                           }
+                       }
+                       return false;
+                   }},
         stage);
 }
 
@@ -166,14 +167,13 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                 }
                 return out;
             },
-            [&](const LatticeStage& s) {
+            [&](const GridStage& s) {
                 std::array<Expr, 3> at = rgb;
                 for (Expr& c : at)
                     c = substitute(s.shaper, std::span(&c, 1));
                 std::array<Expr, 3> out = rgb;
                 for (int c = 0; c < 3; ++c) {
-                    out[static_cast<std::size_t>(c)] =
-                        interpolate(s.lattice, c, at[0], at[1], at[2]);
+                    out[static_cast<std::size_t>(c)] = interpolate(s.grid, c, at[0], at[1], at[2]);
                 }
                 return out;
             },
@@ -204,7 +204,7 @@ Pipeline bind_uniforms(const Pipeline& pipeline, const UniformValues& values) {
                                   s.chroma = bind_uniforms(s.chroma, values);
                               },
                               [&](CrossTalkStage& s) { bind_all(s.f); },
-                              [&](LatticeStage& s) { s.shaper = bind_uniforms(s.shaper, values); }},
+                              [&](GridStage& s) { s.shaper = bind_uniforms(s.shaper, values); }},
                    stage);
     }
     return bound;
@@ -254,34 +254,34 @@ std::string to_string(const Pipeline& pipeline) {
     for (const Stage& stage : pipeline) {
         s += std::string(stage_kind(stage)) + ": ";
         s += std::visit(
-            Overloaded{
-                [](const MatrixStage& m) { return to_text(m.m); },
-                [](const CurveStage& c) {
-                    if (c.is_uniform()) return to_string(c.f[0]);
-                    return to_string(c.f[0]) + " | " + to_string(c.f[1]) + " | " +
-                           to_string(c.f[2]);
-                },
-                [](const ToneScaleStage& t) {
-                    return std::string(t.norm == ToneScaleStage::Norm::max_rgb ? "of max(r, g, b): "
-                                                                               : "of luminance: ") +
-                           to_string(t.f);
-                },
-                [](const HuePreservingStage& h) { return to_string(h.f); },
-                [](const HexconeStage& h) {
-                    return "offset " + to_string(h.offset) + ", value " + to_string(h.value) +
-                           ", chroma " + to_string(h.chroma);
-                },
-                [](const LatticeStage& l) {
-                    return std::to_string(l.lattice->edge()) + "^3 at " + to_string(l.shaper);
-                },
-                [](const ClampStage& c) {
-                    return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
-                },
-                [](const CrossTalkStage& m) {
-                    static const std::array<std::string, 3> rgb = {"r", "g", "b"};
-                    return to_string(m.f[0], rgb) + " | " + to_string(m.f[1], rgb) + " | " +
-                           to_string(m.f[2], rgb);
-                }},
+            Overloaded{[](const MatrixStage& m) { return to_text(m.m); },
+                       [](const CurveStage& c) {
+                           if (c.is_uniform()) return to_string(c.f[0]);
+                           return to_string(c.f[0]) + " | " + to_string(c.f[1]) + " | " +
+                                  to_string(c.f[2]);
+                       },
+                       [](const ToneScaleStage& t) {
+                           return std::string(t.norm == ToneScaleStage::Norm::max_rgb
+                                                  ? "of max(r, g, b): "
+                                                  : "of luminance: ") +
+                                  to_string(t.f);
+                       },
+                       [](const HuePreservingStage& h) { return to_string(h.f); },
+                       [](const HexconeStage& h) {
+                           return "offset " + to_string(h.offset) + ", value " +
+                                  to_string(h.value) + ", chroma " + to_string(h.chroma);
+                       },
+                       [](const GridStage& l) {
+                           return std::to_string(l.grid->edge()) + "^3 at " + to_string(l.shaper);
+                       },
+                       [](const ClampStage& c) {
+                           return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
+                       },
+                       [](const CrossTalkStage& m) {
+                           static const std::array<std::string, 3> rgb = {"r", "g", "b"};
+                           return to_string(m.f[0], rgb) + " | " + to_string(m.f[1], rgb) + " | " +
+                                  to_string(m.f[2], rgb);
+                       }},
             stage);
         s += "\n";
     }

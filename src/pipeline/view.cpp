@@ -59,12 +59,12 @@ InputUnits parse_input_units(std::string_view text) {
 SourceColor in_units(SourceColor source, InputUnits units) {
     if (units == InputUnits::relative || source.is_absolute) return source;
     source.is_absolute = true;
-    source.scale /= kReferenceWhite;
+    source.scale /= kUnitLuminance;
     return source;
 }
 
 double scene_scale(const SourceColor& source, double reference_white) {
-    return source.scale * (source.is_absolute ? kReferenceWhite / reference_white : 1);
+    return source.scale * (source.is_absolute ? kUnitLuminance / reference_white : 1);
 }
 
 void check_exposure(double stops) {
@@ -94,10 +94,10 @@ View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
         if (is_same_name(display, output)) view.display = output;
     }
     const bool is_display = view.display != kLinearOutput && view.display != kNativeOutput;
-    if (reference_white != kReferenceWhite && !is_absolute &&
+    if (reference_white != kUnitLuminance && !is_absolute &&
         !(is_display && find_display(display).is_hdr)) {
         throw Error("reference white is " + shortest(reference_white) + "; expected " +
-                    shortest(kReferenceWhite) + " with display " + std::string(display) +
+                    shortest(kUnitLuminance) + " with display " + std::string(display) +
                     ", which is not an HDR display, and input " + view.input +
                     ", which is not in cd/m2");
     }
@@ -105,7 +105,7 @@ View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
     const std::vector<std::string> others{std::string(kLinearOutput), std::string(kNativeOutput)};
     const Display& found = find_display(display, others);
     view.display = found.id;
-    const double unit = found.is_hdr ? kReferenceWhite / reference_white : 1;
+    const double unit = found.is_hdr ? kUnitLuminance / reference_white : 1;
     view.op = resolve_for_display(view.op, {found.primaries, found.is_hdr, found.peak * unit});
     return view;
 }
@@ -152,7 +152,7 @@ Pipeline build_live_view(const View& view, const std::vector<std::string>& unifo
         return stages;
     }
     const Display& display = find_display(view.display);
-    const bool is_same_white = view.reference_white == kReferenceWhite;
+    const bool is_same_white = view.reference_white == kUnitLuminance;
     if (view.op.output_display() == display.id && is_same_white) {
         // The operator's own display: no conversion of its code values.
         stages.push_back(ClampStage{0, 1});
@@ -165,7 +165,7 @@ Pipeline build_live_view(const View& view, const std::vector<std::string>& unifo
         stages.push_back(ClampStage{0, limit.peak});
     }
     if (display.is_hdr && !is_same_white) {
-        stages.push_back(MatrixStage{scale(kIdentity3, view.reference_white / kReferenceWhite)});
+        stages.push_back(MatrixStage{scale(kIdentity3, view.reference_white / kUnitLuminance)});
         stages.push_back(ClampStage{0, display.largest_light});
     }
     append(stages, display.encode);
@@ -190,7 +190,7 @@ Pipeline build_inverse_view(const View& view) {
         const Display& display = find_display(view.display);
         stages = display.decode;
         stages.push_back(MatrixStage{
-            scale(rgb_to_rgb(display.primaries, own), kReferenceWhite / view.reference_white)});
+            scale(rgb_to_rgb(display.primaries, own), kUnitLuminance / view.reference_white)});
     }
     if (view.display != kNativeOutput && view.op.output() == OutputKind::code_value) {
         const std::string own_display = view.op.output_display();

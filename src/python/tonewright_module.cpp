@@ -705,7 +705,7 @@ py::list verify_operators(const std::vector<std::string>& operators,
     options.with_gpu = with_gpu;
     options.shaders = shaders;
     if (is_quick) {
-        options.lattice_edge = 9;
+        options.gamut_grid_size = 9;
         options.random_count = 10000;
         options.only_best_target = true;
     }

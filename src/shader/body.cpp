@@ -269,8 +269,8 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
             return {choose(e), *language_.choose == '{' ? kAny : kAtom};
         case ExprOp::lookup:
             return {table_value(e), kAtom};
-        case ExprOp::lattice:
-            return {lattice_channel(e), kAtom};
+        case ExprOp::grid:
+            return {grid_channel(e), kAtom};
     }
     return {};
 }
@@ -287,13 +287,13 @@ std::string FunctionBody::table_value(const Expr& e) {
     return fmt::format(fmt::runtime(table.function), fmt::arg("cell", cell));
 }
 
-std::string FunctionBody::lattice_channel(const Expr& e) {
+std::string FunctionBody::grid_channel(const Expr& e) {
     std::string color;
     for (int i = 0; i < 3; ++i)
         color += (i ? ", " : "") + operand(e.operand(i), kAny);
-    const std::string call = fmt::format("{}({}({}))", tables_.at(e.lattice().get()).function,
-                                         language_.make_color, color);
-    std::string& name = lattice_colors_[call];
+    const std::string call =
+        fmt::format("{}({}({}))", tables_.at(e.grid().get()).function, language_.make_color, color);
+    std::string& name = grid_colors_[call];
     if (name.empty()) {
         name = unique("node");
         add_line(language_.color, name, call);

@@ -12,7 +12,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Functions that read a table or a Lattice in the text.
+/// Functions that read a table or a Grid in the text.
 struct TableText {
     std::string function;  // of the number, or of the color
     /// For a table of cells: the function that finds the cell of a number. Tables with the same
@@ -27,7 +27,7 @@ class FunctionBody {
     /// @param inputs  the text of input 0, 1, ...
     /// @param taken   names that variables must not have
     /// @param names   numbers that become variables of these names
-    /// @param tables  functions for tables and Lattices
+    /// @param tables  functions for tables and Grids
     FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
                  std::set<std::string> taken, std::map<double, std::string> names,
                  std::map<const void*, TableText> tables);
@@ -56,7 +56,7 @@ class FunctionBody {
     [[nodiscard]] std::string name_for(const Expr& e);
     [[nodiscard]] std::string unique(const std::string& name);
     [[nodiscard]] std::string table_value(const Expr& e);
-    [[nodiscard]] std::string lattice_channel(const Expr& e);
+    [[nodiscard]] std::string grid_channel(const Expr& e);
     /// A literal, or the variable that holds it.
     [[nodiscard]] std::string literal(double value) const;
     void add_line(const char* type, const std::string& name, const std::string& value);
@@ -73,8 +73,8 @@ class FunctionBody {
     std::map<std::string, std::vector<const ExprNode*>> named_;
     /// For powers of a variable by multiplication: the variable and the exponent.
     std::unordered_map<const ExprNode*, std::pair<std::string, int>> powers_;
-    /// Colors read from Lattices, by the call.
-    std::map<std::string, std::string> lattice_colors_;
+    /// Colors read from Grids, by the call.
+    std::map<std::string, std::string> grid_colors_;
     /// Cells found in tables, by the call.
     std::map<std::string, std::string> cells_;
     std::string lines_;

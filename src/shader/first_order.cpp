@@ -33,7 +33,7 @@ FirstOrderError first_order_error(const std::array<Expr, 3>& outputs) {
             if (code[i].op == ExprOp::constant &&
                 static_cast<double>(static_cast<float>(value[i])) == value[i])
                 continue;
-            const bool is_place = code[i].op == ExprOp::lookup || code[i].op == ExprOp::lattice;
+            const bool is_place = code[i].op == ExprOp::lookup || code[i].op == ExprOp::grid;
             const std::array<std::uint32_t, 3> operands = {code[i].a, code[i].b, code[i].c};
             // The position in a table is a product, which adds a rounding of the argument.
             for (int k = 0; is_place && k < operand_count(code[i].op); ++k) {

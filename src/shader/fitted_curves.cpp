@@ -56,7 +56,7 @@ Expr fitted(const Expr& f) {
     fit_curves(code, outputs, measure_influence(code, outputs), cache, CurveForm::segments);
     std::map<const Table*, std::shared_ptr<const Table>> tables;
     for (const Expr& e : nodes_of(std::span(&f, 1))) {
-        if (e.op() == ExprOp::lattice) return f;
+        if (e.op() == ExprOp::grid) return f;
         if (e.op() == ExprOp::lookup) tables[e.table().get()] = e.table();
     }
     std::vector<Expr> values;

@@ -59,7 +59,7 @@ Interval FloatForm::range(const Expr& e) {
     if (e.op() == ExprOp::power) a = {std::max(a.lo, 0.0), std::max(a.hi, 0.0)};
     Interval r =
         interval_of(e.op(), a, of(1), of(2), e.op() == ExprOp::lookup ? e.table().get() : nullptr,
-                    e.op() == ExprOp::lattice ? e.lattice().get() : nullptr);
+                    e.op() == ExprOp::grid ? e.grid().get() : nullptr);
     const bool is_square = e.op() == ExprOp::multiply && same(e.operand(0), e.operand(1));
     if (is_square) r.lo = std::max(r.lo, 0.0);
     keep_.push_back(e);
@@ -108,8 +108,8 @@ Expr FloatForm::rewrite(const Expr& e) {
             if (e.operand(0).is_constant(1) && e.operand(1).op() == ExprOp::exp2)
                 return one_minus_exp2((*this)(e.operand(1)).operand(0));
             return part(0) - part(1);
-        case ExprOp::lattice:
-            return interpolate(e.lattice(), e.channel(), part(0), part(1), part(2));
+        case ExprOp::grid:
+            return interpolate(e.grid(), e.channel(), part(0), part(1), part(2));
         default: {
             std::vector<Expr> parts;
             parts.reserve(static_cast<std::size_t>(e.operand_count()));

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "expr/lattice_place.h"
+#include "expr/grid_place.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -81,10 +81,9 @@ float operation(const TapeInstruction& step, float a, float b, float c) {
             return a != 0 ? b : c;
         case ExprOp::lookup:
             return look_up(*step.table, a);
-        case ExprOp::lattice:
-            return static_cast<float>((*step.lattice)(step.input, static_cast<double>(a),
-                                                      static_cast<double>(b),
-                                                      static_cast<double>(c)));
+        case ExprOp::grid:
+            return static_cast<float>((*step.grid)(step.input, static_cast<double>(a),
+                                                   static_cast<double>(b), static_cast<double>(c)));
         case ExprOp::input:
         case ExprOp::uniform:
             break;

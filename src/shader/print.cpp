@@ -131,22 +131,22 @@ class ProgramPrinter {
     /// Tables that no earlier function reads.
     void print_tables_of(const std::string& function, const std::vector<Expr>& exprs) {
         int tables = 0;
-        int lattices = 0;
+        int grids = 0;
         const auto numbered = [&](const std::string& name, int number) {
             return helper(name + (number > 1 ? std::to_string(number) : ""));
         };
         for (const Expr& e : nodes_of(exprs)) {
             const void* const what = e.op() == ExprOp::lookup
                                          ? static_cast<const void*>(e.table().get())
-                                     : e.op() == ExprOp::lattice ? e.lattice().get()
-                                                                 : nullptr;
+                                     : e.op() == ExprOp::grid ? e.grid().get()
+                                                              : nullptr;
             if (!what || table_texts_.contains(what)) continue;
             if (e.op() == ExprOp::lookup) {
                 print_table(numbered(function + "_table", ++tables), *e.table());
             } else {
-                const std::string name = numbered(function + "_at", ++lattices);
+                const std::string name = numbered(function + "_at", ++grids);
                 table_texts_[what] = {name};
-                print_lattice(name, *e.lattice());
+                print_grid(name, *e.grid());
             }
         }
     }
@@ -382,11 +382,11 @@ class ProgramPrinter {
         end();
     }
 
-    /// Text that reads a node of the Lattice: from an array, or from a texture.
-    std::string print_nodes(const std::string& name, const Lattice& lattice) {
-        const std::vector<double>& numbers = lattice.nodes();
+    /// Text that reads a node of the Grid: from an array, or from a texture.
+    std::string print_nodes(const std::string& name, const Grid& grid) {
+        const std::vector<double>& numbers = grid.nodes();
         const std::string nodes = name + "_nodes";
-        if (!is_texture(fmt::format("a 3D LUT of {}^3 colors", lattice.edge()), numbers.size())) {
+        if (!is_texture(fmt::format("a 3D LUT of {}^3 colors", grid.edge()), numbers.size())) {
             const std::string values = array(nodes, numbers);
             if (!language_.has_local_arrays) text_ += "\n" + values;
             const std::string node = name + "_node";
@@ -395,20 +395,19 @@ class ProgramPrinter {
                    declared(language_.integer, "b")});
             if (language_.has_local_arrays) text_ += values;
             line(let(language_.integer, "i",
-                     fmt::format("3 * ((r * {0} + g) * {0} + b)", lattice.edge())));
+                     fmt::format("3 * ((r * {0} + g) * {0} + b)", grid.edge())));
             line("return " + made({nodes + "[i]", nodes + "[i + 1]", nodes + "[i + 2]"}) + ";");
             end();
             return node + "({r}, {g}, {b})";
         }
-        ShaderTexture& texture =
-            declare_texture(nodes, {lattice.edge(), lattice.edge(), lattice.edge()});
+        ShaderTexture& texture = declare_texture(nodes, {grid.edge(), grid.edge(), grid.edge()});
         for (std::size_t i = 0; i < numbers.size(); ++i) {
             texture.rgba.push_back(static_cast<float>(numbers[i]));
             if (i % 3 == 2) texture.rgba.push_back(1);
         }
-        if (language_.is_double && lattice.has_formula()) {
+        if (language_.is_double && grid.has_formula()) {
             texture.formula = nodes + "_formula";
-            print_formula(texture.formula, lattice.formula());
+            print_formula(texture.formula, grid.formula());
         }
         // The third coordinate runs fastest.
         return fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", nodes),
@@ -416,8 +415,8 @@ class ProgramPrinter {
                language_.color_of_fetch;
     }
 
-    void print_lattice(const std::string& name, const Lattice& lattice) {
-        const std::string fetch = print_nodes(name, lattice);
+    void print_grid(const std::string& name, const Grid& grid) {
+        const std::string fetch = print_nodes(name, grid);
         const auto node = [&](const char* r, const char* g, const char* b) {
             return fmt::format(fmt::runtime(fetch), fmt::arg("r", r), fmt::arg("g", g),
                                fmt::arg("b", b));
@@ -436,10 +435,10 @@ class ProgramPrinter {
             const std::string channel(1, "rgb"[i]);
             line(let(number, ("place_" + channel).c_str(),
                      limited(channels_of("c")[i], literal(0), literal(1)) + " * " +
-                         literal(lattice.edge() - 1)));
+                         literal(grid.edge() - 1)));
             line(let(integer, channel.c_str(),
-                     to_integer(fmt::format("{}(place_{}, {})", min, channel,
-                                            literal(lattice.edge() - 2)))));
+                     to_integer(
+                         fmt::format("{}(place_{}, {})", min, channel, literal(grid.edge() - 2)))));
             line(let(number, ("f" + channel).c_str(),
                      "place_" + channel + " - " + to_number(channel)));
         }

@@ -16,7 +16,7 @@ struct PrintedProgram {
 /// The functions of a program, each before the ones that call it.
 /// @param name      name of the last function, which prefixes the names of all others
 /// @param uniforms  its arguments after the color
-/// @throws Error    if the language cannot hold the tables or a Lattice this way
+/// @throws Error    if the language cannot hold the tables or a Grid this way
 [[nodiscard]] PrintedProgram print_program(const ShaderProgram& program,
                                            const LanguageFacts& language, const std::string& name,
                                            const std::vector<std::string>& uniforms,

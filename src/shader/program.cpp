@@ -150,12 +150,12 @@ class ProgramMaker {
         add_color_function(own, std::move(calls), shared.f);
     }
 
-    void add(const LatticeStage& s, const std::string&) {
+    void add(const GridStage& s, const std::string&) {
         add_to_each_channel("shaper", s.shaper);
         const Channels c = channels();
         Channels out = c;
         for (int i = 0; i < 3; ++i)
-            out[static_cast<std::size_t>(i)] = interpolate(s.lattice, i, c[0], c[1], c[2]);
+            out[static_cast<std::size_t>(i)] = interpolate(s.grid, i, c[0], c[1], c[2]);
         add_color_function("lattice", {}, out);
     }
 

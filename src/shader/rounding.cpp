@@ -50,7 +50,7 @@ Rounding rounding_of(ExprOp op, double value, const Interval& a, const Interval&
             return {once, 4096 * ulp};
         case ExprOp::lookup:  // the place, the difference of samples, the product, the sum
             return {3 * once, 3 * once};
-        case ExprOp::lattice:  // nodes, weights, and a sum of four products
+        case ExprOp::grid:  // nodes, weights, and a sum of four products
             return {4 * once, 4 * once};
         default:  // the result is one of the operands, or a whole number
             return {};

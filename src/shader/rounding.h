@@ -17,7 +17,7 @@ struct Rounding {
 };
 
 /// Vulkan 1.3 specification, "Precision and Operation of SPIR-V Instructions", and WGSL (W3C,
-/// 2024), 15.7.4.1 "Floating Point Accuracy", which takes the same bounds. For tables and Lattices:
+/// 2024), 15.7.4.1 "Floating Point Accuracy", which takes the same bounds. For tables and Grids:
 /// the operations on their samples, which are at most as large as the value.
 /// @param value  largest value of the result
 /// @param a, b   intervals of the operands

@@ -73,9 +73,9 @@ TableReading read(const Table& table, const Interval& a, const TableReading& who
 
 /// Values of the nodes that the three read, and of their neighbors.
 /// @param whole  interval of all nodes, used if there are too many to read
-Interval read(const Lattice& lattice, int channel, const std::array<Interval, 3>& at,
+Interval read(const Grid& grid, int channel, const std::array<Interval, 3>& at,
               const Interval& whole) {
-    const auto n = static_cast<std::size_t>(lattice.edge());
+    const auto n = static_cast<std::size_t>(grid.edge());
     std::array<std::size_t, 3> begin{};
     std::array<std::size_t, 3> end{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -88,7 +88,7 @@ Interval read(const Lattice& lattice, int channel, const std::array<Interval, 3>
     const std::size_t count =
         (end[0] - begin[0] + 1) * (end[1] - begin[1] + 1) * (end[2] - begin[2] + 1);
     if (count > kMostSamples) return whole;
-    const std::vector<double>& nodes = lattice.nodes();
+    const std::vector<double>& nodes = grid.nodes();
     Interval values{kInfinity, -kInfinity};
     for (std::size_t x = begin[0]; x <= end[0]; ++x) {
         for (std::size_t y = begin[1]; y <= end[1]; ++y) {
@@ -242,10 +242,10 @@ RunningError::RunningError(const std::vector<Expr>& outputs) {
         step.b = at(1);
         step.c = at(2);
         if (e.op() == ExprOp::lookup) step.table = read(*e.table(), {-kInfinity, kInfinity}, {});
-        if (e.op() == ExprOp::lattice) {
-            step.whole = interval_of(e.op(), {}, {}, {}, nullptr, e.lattice().get());
-            const std::vector<double>& nodes = e.lattice()->nodes();
-            const auto n = static_cast<std::size_t>(e.lattice()->edge());
+        if (e.op() == ExprOp::grid) {
+            step.whole = interval_of(e.op(), {}, {}, {}, nullptr, e.grid().get());
+            const std::vector<double>& nodes = e.grid()->nodes();
+            const auto n = static_cast<std::size_t>(e.grid()->edge());
             const std::size_t stride[3] = {n * n, n, 1};
             for (std::size_t i = 0; i < n * n * n; ++i) {
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -337,10 +337,10 @@ std::vector<Bounded> RunningError::run(const std::vector<Bounded>& inputs, const
             computed = read(*e.table(), a.computed, step.table).values;
             const double of_place = kHalfUlp * magnitude(a.computed);
             error = times(both.slope, a.error + 2 * of_place) + both.of_position + both.jump;
-        } else if (e.op() == ExprOp::lattice) {
-            r.exact = read(*e.lattice(), e.channel(), {a.exact, b.exact, c.exact}, step.whole);
+        } else if (e.op() == ExprOp::grid) {
+            r.exact = read(*e.grid(), e.channel(), {a.exact, b.exact, c.exact}, step.whole);
             computed =
-                read(*e.lattice(), e.channel(), {a.computed, b.computed, c.computed}, step.whole);
+                read(*e.grid(), e.channel(), {a.computed, b.computed, c.computed}, step.whole);
             const Bounded* parts[3] = {&a, &b, &c};
             for (int k = 0; k < 3; ++k)
                 error += times(step.slope[k], parts[k]->error + 2 * kHalfUlp);

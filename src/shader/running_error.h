@@ -45,9 +45,9 @@ class RunningError {
     struct Step {
         Expr e;
         std::size_t a = 0, b = 0, c = 0;
-        /// For a Lattice: the largest difference of neighbors along each axis.
+        /// For a Grid: the largest difference of neighbors along each axis.
         double slope[3] = {};
-        Interval whole;      // of a lattice's nodes
+        Interval whole;      // of a grid's nodes
         TableReading table;  // of all samples
     };
     /// Comparisons with an uncertain result.

@@ -231,7 +231,7 @@ double measure_in_float(const ShaderRequest& request, const ShaderProgram& progr
     for (const InputSpace& candidate : all_input_spaces()) {
         if (candidate.id == request.view.input) space = &candidate;
     }
-    const SampleSet samples = make_sample_set(*space, {.lattice_edge = 6, .random_count = 3000});
+    const SampleSet samples = make_sample_set(*space, {.gamut_grid_size = 6, .random_count = 3000});
     std::vector<float> got(samples.rgb.size());
     std::vector<double> truth(samples.rgb.size());
     in_float.run_rgb(samples.rgb.data(), got.data(), samples.size());
@@ -255,7 +255,7 @@ double measure_in_float(const ShaderRequest& request, const ShaderProgram& progr
     return worst;
 }
 
-/// Hash of all operations and numbers, including tables and Lattices. Numbers are hashed as floats,
+/// Hash of all operations and numbers, including tables and Grids. Numbers are hashed as floats,
 /// so that different rounding of math libraries gives the same definition.
 std::string definition_hash(const Pipeline& pipeline) {
     const std::array<Expr, 3> rgb = compose(pipeline);
@@ -281,9 +281,9 @@ std::string definition_hash(const Pipeline& pipeline) {
             add_numbers(e.table().get(), e.table()->samples);
             add_numbers(&e.table()->positions, e.table()->positions);
         }
-        if (e.op() == ExprOp::lattice) {
+        if (e.op() == ExprOp::grid) {
             text += " " + std::to_string(e.channel());
-            add_numbers(e.lattice().get(), e.lattice()->nodes());
+            add_numbers(e.grid().get(), e.grid()->nodes());
         }
         text += "\n";
         number.emplace(e.node(), number.size());
@@ -470,10 +470,10 @@ std::string header(const ShaderRequest& request, const Shader& shader,
 
 }  // namespace
 
-bool reads_lattice(const View& view) {
+bool reads_grid(const View& view) {
     const std::vector<Expr> nodes = nodes_of(compose(build_view(view)));
     return std::any_of(nodes.begin(), nodes.end(),
-                       [](const Expr& e) { return e.op() == ExprOp::lattice; });
+                       [](const Expr& e) { return e.op() == ExprOp::grid; });
 }
 
 std::string shader_function_name(const ShaderRequest& request) {

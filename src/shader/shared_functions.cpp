@@ -154,8 +154,8 @@ class Sharer {
         for (int k = 0; k < e.operand_count(); ++k)
             operands.push_back(rebuilt(number_.at(e.operand(k).node()), known));
         Expr result =
-            e.op() == ExprOp::lattice
-                ? interpolate(e.lattice(), e.channel(), operands[0], operands[1], operands[2])
+            e.op() == ExprOp::grid
+                ? interpolate(e.grid(), e.channel(), operands[0], operands[1], operands[2])
                 : make_expr(e.op(), operands, e.op() == ExprOp::lookup ? e.table() : nullptr);
         PartNames::move(e, result);
         known.insert_or_assign(i, result);

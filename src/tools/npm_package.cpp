@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* kTypes =
     R"(/** A grid of colors that the text reads: edge^3 texels of four 32-bit floats. */
-export interface Lattice {
+export interface Grid {
     /** Its name in the text. WGSL binds the textures of an operator at group 0, in their order. */
     name: string;
     edge: number;
@@ -36,7 +36,7 @@ interface Common {
     title: string;
     /** The function in the text: scene-linear Rec.709 to display-linear Rec.709. */
     functionName: string;
-    lattices: readonly Lattice[];
+    grids: readonly Grid[];
     /** Largest errors of sRGB code values (0 to 1); null: no useful bound. */
     errors: { readonly float: number; readonly guaranteed: number | null };
 }
@@ -48,9 +48,9 @@ export interface Operator extends Glsl, Wgsl {}
 
 constexpr const char* kThreejs = R"(import { Data3DTexture, FloatType } from 'three';
 
-export async function loadUniforms({ lattices }) {
+export async function loadUniforms({ grids }) {
     const uniforms = {};
-    for (const { name, edge, url } of lattices) {
+    for (const { name, edge, url } of grids) {
         const response = await fetch(url);
         if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
         const texture = new Data3DTexture(new Float32Array(await response.arrayBuffer()), edge, edge, edge);
@@ -113,7 +113,7 @@ const material = new THREE.ShaderMaterial({
 
 | import from | entry |
 |---|---|
-| `tonewright-shaders` | `{ id, title, functionName, glsl, wgsl, lattices, errors }` |
+| `tonewright-shaders` | `{ id, title, functionName, glsl, wgsl, grids, errors }` |
 | `tonewright-shaders/glsl`, `tonewright-shaders/wgsl` | the same in one language |
 | `tonewright-shaders/threejs` | `use_NAME()`, which installs `CustomToneMapping`; `loadUniforms(entry)` |
 | `tonewright-shaders/tsl` | a node function of color and exposure |
@@ -158,7 +158,7 @@ NpmOperator npm_operator(const OperatorVariant& variant) {
     entry.glsl = write_shader(request, &errors);
     request.language = ShaderLanguage::wgsl;
     entry.wgsl = write_shader(request, &errors);
-    if (reads_lattice(request.view)) return entry;
+    if (reads_grid(request.view)) return entry;
     request.application = &find_shader_application("threejs");
     entry.threejs = write_shader(request, &errors);
     request.application = &find_shader_application("threejs-tsl");
@@ -246,21 +246,21 @@ class Package {
   private:
     /// Properties that GLSL and WGSL share. Looks share 3D LUTs: each is one file.
     std::string facts(const NpmOperator& op, const std::string& id) {
-        std::string lattices;
+        std::string grids;
         for (const ShaderTexture& texture : op.glsl.textures) {
             std::string bytes = little_endian_bytes(texture.rgba);
             const std::string path = "lattices/" + content_hash(bytes) + ".rgba32f";
-            lattices += fmt::format(
+            grids += fmt::format(
                 "\n        {{ name: '{}', edge: {}, url: new URL('../{}', import.meta.url) }},",
                 texture.name, texture.size[0], path);
             if (written_.insert(path).second) files_.push_back({path, std::move(bytes)});
         }
-        if (!lattices.empty()) lattices += "\n    ";
+        if (!grids.empty()) grids += "\n    ";
         const ShaderErrors& errors = op.glsl.errors;
         return fmt::format(
             "    id: '{}',\n    title: {},\n    functionName: '{}',\n    lattices: [{}],\n"
             "    errors: {{ float: {}, guaranteed: {} }},\n",
-            id, Json(op.title).dump(), op.glsl.function, lattices, rounded_up(errors.in_float),
+            id, Json(op.title).dump(), op.glsl.function, grids, rounded_up(errors.in_float),
             std::isfinite(errors.guaranteed) ? rounded_up(errors.guaranteed) : "null");
     }
     void add_language(const std::string& language, const std::string& id, const std::string& type,
@@ -280,7 +280,7 @@ class Package {
     std::vector<GeneratedFile> files_;
     std::map<std::string, std::string> modules_;  // by name: its exports
     std::map<std::string, std::string> types_;
-    std::set<std::string> written_;  // lattices
+    std::set<std::string> written_;  // grids
     std::string rows_;               // of the README's table
 };
 

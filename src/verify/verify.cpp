@@ -79,8 +79,8 @@ double largest_after(const Stage& stage, double largest) {
     if (const auto* c = std::get_if<ClampStage>(&stage)) return std::min(largest, c->hi);
     if (const auto* c = std::get_if<CurveStage>(&stage))
         return std::max({at(c->f[0]), at(c->f[1]), at(c->f[2])});
-    if (const auto* l = std::get_if<LatticeStage>(&stage)) {
-        const std::vector<double>& nodes = l->lattice->nodes();
+    if (const auto* l = std::get_if<GridStage>(&stage)) {
+        const std::vector<double>& nodes = l->grid->nodes();
         return *std::max_element(nodes.begin(), nodes.end());
     }
     return largest;
@@ -112,7 +112,7 @@ Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
             allow(3e-7 * largest(h->f), 1e-6 * largest(h->f));
         if (const auto* h = std::get_if<HexconeStage>(&stage))
             allow(1e-5 * largest(h->value), 3e-5 * largest(h->value));
-        if (std::holds_alternative<LatticeStage>(stage)) allow(1e-5, 5e-5);
+        if (std::holds_alternative<GridStage>(stage)) allow(1e-5, 5e-5);
         largest_input = largest_after(stage, largest_input);
     }
     if (declared.simd > 0) b.simd = declared.simd;
@@ -281,10 +281,10 @@ double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOpe
         if (part->getDirection() == OCIO::TRANSFORM_DIR_INVERSE) return 0;
         // An inverse that mixes channels, in 33 or 37 nodes a side; a formula may have corners.
         const Pipeline stages = op.build();
-        const bool is_lattice = std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
-            return std::holds_alternative<LatticeStage>(stage);
+        const bool is_grid = std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
+            return std::holds_alternative<GridStage>(stage);
         });
-        bound = std::max(bound, is_lattice || op.op->build_inverse ? 2.5e-2 : 5e-2);
+        bound = std::max(bound, is_grid || op.op->build_inverse ? 2.5e-2 : 5e-2);
     }
     return bound;
 }
@@ -487,9 +487,9 @@ VerifyResult measure_all(const VerifyOptions& options,
     }
 
     // Every view on every display, in a minute.
-    SampleSetOptions counts = {options.lattice_edge, options.random_count};
+    SampleSetOptions counts = {options.gamut_grid_size, options.random_count};
     if (is_of_config) {
-        counts.lattice_edge = std::min(counts.lattice_edge, 17);
+        counts.gamut_grid_size = std::min(counts.gamut_grid_size, 17);
         counts.random_count = std::min<std::size_t>(counts.random_count, 50000);
     }
     SampleSet samples = make_sample_set(input, counts);
@@ -634,7 +634,7 @@ VerifyResult measure_all(const VerifyOptions& options,
             try {
                 shader = write_shader({.view = view, .language = language.language}, &*errors);
             } catch (const Error&) {
-                if (language.holds_lattices) throw;
+                if (language.holds_grids) throw;
                 add_note(language.id, "none: it cannot store the operator's tables");
                 continue;
             }

@@ -16,10 +16,9 @@ tonewright::TableFile stub_table(const std::string& path) {
     using namespace tonewright;  // NOLINT(google-build-using-namespace): this is its program
     if (path.find("no") != std::string::npos) throw FileError("read: " + path + ": no such file");
     const auto table = std::make_shared<const Table>(Table{{0, 0.25, 1}});
-    const auto lattice =
-        std::make_shared<const Lattice>(2, [] { return std::vector<double>(24, 0.5); });
+    const auto grid = std::make_shared<const Grid>(2, [] { return std::vector<double>(24, 0.5); });
     TableFile file;
-    file.stages = {curve_stage(lookup(table, Expr::input())), LatticeStage{Expr::input(), lattice}};
+    file.stages = {curve_stage(lookup(table, Expr::input())), GridStage{Expr::input(), grid}};
     if (path.find("acescct") != std::string::npos) {
         file.encoding = "acescct";
         file.space = "lin_ap1";

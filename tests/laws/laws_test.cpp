@@ -498,13 +498,13 @@ TEST_P(ParameterLaw, AcceptedValuesGiveFiniteResults) {
     std::set<Settings> tried;
     std::size_t accepted = 0;
     // Preparing an engine for the largest operators takes a good part of a second, and so does a
-    // lattice.
+    // grid.
     const Tape usual(
         compose(build_view(make_view(resolve_operator(op.id), "lin_rec709", 0, "srgb"))));
     const bool is_large =
         usual.code().size() > 300 ||
         std::any_of(usual.code().begin(), usual.code().end(),
-                    [](const TapeInstruction& step) { return step.op == ExprOp::lattice; });
+                    [](const TapeInstruction& step) { return step.op == ExprOp::grid; });
     const std::size_t wanted = is_large ? count_of(8U, 2U) : count_of(50U, 6U);
     // Of two peaks and two blacks hardly one random set in twenty is in order.
     for (int round = 0; round < 600 && accepted < wanted; ++round) {

@@ -248,7 +248,7 @@ void compare_pictures(CompareOptions options) {
         picture = to_rec709_light(picture, source, options.reference_white, options.in);
         options.input = "lin_rec709";
         options.input_units = "relative";
-        options.reference_white = kReferenceWhite;
+        options.reference_white = kUnitLuminance;
         renderings = renderings_of(options);
     }
     about_picture(options.in, [&] { take_statistics(renderings, picture, options); });

@@ -217,7 +217,7 @@ std::vector<float> read_picture_pixels(const std::string& path) {
     }
     const SourceColor source =
         about_picture(path, [&] { return source_color(stored.spec(), kAutoInput); });
-    const OIIO::ImageBuf image = to_rec709_light(stored, source, kReferenceWhite, path);
+    const OIIO::ImageBuf image = to_rec709_light(stored, source, kUnitLuminance, path);
     const int channels = image.nchannels();
     const auto& spec = image.spec();
     const auto step = static_cast<int>(spec.image_pixels() / 1000000 + 1);

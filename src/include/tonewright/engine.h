@@ -29,7 +29,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// is finite for every double, also for NaN and infinities. Safe to share between threads.
 class TONEWRIGHT_API ReferenceEngine {
   public:
-    /// @throws Error  more than 4096 values live at the same time; exceptions of Lattice::nodes()
+    /// @throws Error  more than 4096 values live at the same time; exceptions of Grid::nodes()
     explicit ReferenceEngine(const Pipeline& pipeline);
     ~ReferenceEngine();
     ReferenceEngine(ReferenceEngine&&) noexcept;
@@ -73,7 +73,7 @@ class TONEWRIGHT_API SimdEngine {
     /// @param target  the instruction set, one of targets(); "" for the best
     /// @throws Error  the machine has no such target, or the pipeline has more values at a time
     /// than
-    ///                a tile holds; exceptions of Lattice::nodes()
+    ///                a tile holds; exceptions of Grid::nodes()
     explicit SimdEngine(const Pipeline& pipeline, double max_error = kSimdError,
                         std::string_view target = {});
     /// An engine for all values of the pipeline's uniforms. Values that depend on uniforms only are

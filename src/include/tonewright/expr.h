@@ -41,7 +41,7 @@ enum class ExprOp : unsigned char {
     floor,
     select,   // b where a is not 0, else c
     lookup,   // table, index
-    lattice,  // one channel of a lattice at three coordinates
+    grid,     // one channel of a grid at three coordinates
     uniform,  // a number with a name and no value yet
 };
 
@@ -66,16 +66,16 @@ class Expr;
 
 /// A 3D LUT: colors on a grid of edge^3 nodes over the unit cube, interpolated in tetrahedra along
 /// the gray diagonal. Outside, the nearest face holds.
-class TONEWRIGHT_API Lattice {
+class TONEWRIGHT_API Grid {
   public:
     /// @param make  gives red, green, blue of each node, the third coordinate running fastest.
     ///              It is called once, at the first use of a node.
     /// @throws Error  for an edge below 2.
-    Lattice(int edge, std::function<std::vector<double>()> make);
+    Grid(int edge, std::function<std::vector<double>()> make);
     /// @param formula  gives three expressions that compute the same node. Inputs 0, 1, 2: the
     ///                 coordinates of the node in [0, 1].
-    Lattice(int edge, std::function<std::vector<double>()> make,
-            std::function<std::vector<Expr>()> formula);
+    Grid(int edge, std::function<std::vector<double>()> make,
+         std::function<std::vector<Expr>()> formula);
 
     [[nodiscard]] int edge() const noexcept { return edge_; }
     /// Safe to call from several threads.
@@ -136,9 +136,9 @@ class TONEWRIGHT_API Expr {
     [[nodiscard]] const std::string& uniform_name() const noexcept;
     /// @pre op() is lookup
     [[nodiscard]] const std::shared_ptr<const Table>& table() const noexcept;
-    /// @pre op() is lattice
-    [[nodiscard]] const std::shared_ptr<const Lattice>& lattice() const noexcept;
-    /// @pre op() is lattice
+    /// @pre op() is grid
+    [[nodiscard]] const std::shared_ptr<const Grid>& grid() const noexcept;
+    /// @pre op() is grid
     [[nodiscard]] int channel() const noexcept;
     [[nodiscard]] int operand_count() const noexcept;
     [[nodiscard]] Expr operand(int i) const;
@@ -147,7 +147,7 @@ class TONEWRIGHT_API Expr {
 
   private:
     friend Expr make_expr(ExprOp op, Span<const Expr> operands, std::shared_ptr<const Table> table);
-    friend Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r,
+    friend Expr interpolate(std::shared_ptr<const Grid> grid, int channel, const Expr& r,
                             const Expr& g, const Expr& b);
     explicit Expr(std::shared_ptr<const ExprNode> node) : node_(std::move(node)) {}
     std::shared_ptr<const ExprNode> node_;
@@ -182,8 +182,8 @@ TONEWRIGHT_API Expr equal(const Expr& a, const Expr& b);
 TONEWRIGHT_API Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false);
 /// @throws Error  the table's positions are not finite and increasing
 TONEWRIGHT_API Expr lookup(std::shared_ptr<const Table> table, const Expr& index);
-/// Channel 0, 1 or 2 of the lattice at coordinates in [0, 1].
-TONEWRIGHT_API Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r,
+/// Channel 0, 1 or 2 of the grid at coordinates in [0, 1].
+TONEWRIGHT_API Expr interpolate(std::shared_ptr<const Grid> grid, int channel, const Expr& r,
                                 const Expr& g, const Expr& b);
 
 // Functions that papers use, composed of the ones above.

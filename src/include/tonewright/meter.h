@@ -30,7 +30,7 @@ struct MeterOptions {
     std::string input = std::string(kAutoInput);
     /// As in TonemapOptions. Reference whites other than the default are accepted for all pictures.
     InputUnits input_units = InputUnits::relative;
-    double reference_white = kReferenceWhite;
+    double reference_white = kUnitLuminance;
     /// As in tonemap(). If alpha counts, pixels whose alpha is 0 or not finite are left out, unless
     /// all are.
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;

@@ -92,13 +92,13 @@ struct CrossTalkStage {
 
 /// A 3D LUT by definition, such as Blender's AgX. One curve maps every channel to the axes of the
 /// LUT, which is interpolated in tetrahedra. The interpolation is part of the definition.
-struct LatticeStage {
+struct GridStage {
     Expr shaper;  // function of input 0; limited to [0, 1]
-    std::shared_ptr<const Lattice> lattice;
+    std::shared_ptr<const Grid> grid;
 };
 
 using Stage = std::variant<MatrixStage, CurveStage, ToneScaleStage, HuePreservingStage,
-                           HexconeStage, ClampStage, CrossTalkStage, LatticeStage>;
+                           HexconeStage, ClampStage, CrossTalkStage, GridStage>;
 using Pipeline = std::vector<Stage>;
 
 [[nodiscard]] TONEWRIGHT_API MatrixStage exposure_stage(double stops);
@@ -113,7 +113,7 @@ template <class NamedStage>
 }
 
 /// The name of the kind in messages and docs: "matrix", "curve", "tone scale", "hue-preserving
-/// curve", "hexcone", "clamp", "cross-talk", "lattice".
+/// curve", "hexcone", "clamp", "cross-talk", "grid".
 [[nodiscard]] TONEWRIGHT_API std::string_view stage_kind(const Stage& stage);
 /// True if the stage changes no pixel.
 [[nodiscard]] TONEWRIGHT_API bool is_identity(const Stage& stage);

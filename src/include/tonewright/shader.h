@@ -29,7 +29,7 @@ struct ShaderLanguageInfo {
     std::string title;      // "GLSL ES 3.00 (WebGL 2)"
     std::string extension;  // of a file
     /// True if views with a 3D LUT can be written.
-    bool holds_lattices = false;
+    bool holds_grids = false;
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<ShaderLanguageInfo>& shader_languages();
 /// Ignores case; `-`, `_` and blanks are equal.
@@ -146,7 +146,7 @@ struct Shader {
                                                  const ShaderErrors* errors = nullptr);
 
 /// True if the view reads a 3D LUT.
-[[nodiscard]] TONEWRIGHT_API bool reads_lattice(const View& view);
+[[nodiscard]] TONEWRIGHT_API bool reads_grid(const View& view);
 
 /// The name of the function that write_shader() writes.
 [[nodiscard]] TONEWRIGHT_API std::string shader_function_name(const ShaderRequest& request);

@@ -34,7 +34,7 @@ struct SourceColorName {
 /// extensions to negative codes. Skia (Chromium), zimg (ffmpeg's zscale), libplacebo and
 /// OpenImageIO 3.1 take the same display. The camera curve is the source color `Rec709`.
 ///
-/// PQ (16) and HLG (18) are absolute luminance: 1.0 is kReferenceWhite cd/m2. HLG has the system
+/// PQ (16) and HLG (18) are absolute luminance: 1.0 is kUnitLuminance cd/m2. HLG has the system
 /// gamma 1.2 of a display of 1000 cd/m2, with the luminance of its primaries. The logarithmic
 /// curves (9, 10) begin at 1/100 and 1/316.2, the light of code 0. The primaries 10 are CIE XYZ
 /// with D65 as gray, without adaptation, as the Color Interop Forum has them.

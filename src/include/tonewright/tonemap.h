@@ -64,7 +64,7 @@ struct TonemapOptions {
     std::string display = "srgb";
     /// Luminance of scene-linear 1.0 in absolute sources (PQ, HLG, cd/m2) and on an HDR display,
     /// cd/m2, [50, 1000]. Other pictures on other displays accept the default only.
-    double reference_white = kReferenceWhite;
+    double reference_white = kUnitLuminance;
     /// Units of the source's decoded numbers. Those in cd/m2 are divided by `reference_white`.
     InputUnits input_units = InputUnits::relative;
     /// Share of the operator, [0, 1]: the rest is a plain clamp (operator `clamp`) of the same

@@ -21,7 +21,7 @@ struct VerifyOptions {
     /// A config to check, or its folder. Empty: a new config in a temporary folder.
     std::string config;
     /// Grid points a side of the gamut grids.
-    int lattice_edge = 33;
+    int gamut_grid_size = 33;
     /// Random colors; colors near black and with negative channels are in proportion.
     std::size_t random_count = 100000;
     /// Includes OpenColorIO's GPU path, and shaders.

@@ -57,7 +57,7 @@ struct SourceColor {
     Primaries primaries;
     /// Stored numbers -> scene-linear. Empty: the numbers are linear.
     Pipeline decode = {};
-    /// True for absolute luminance (PQ, HLG, cd/m2): decoded 1.0 is kReferenceWhite cd/m2.
+    /// True for absolute luminance (PQ, HLG, cd/m2): decoded 1.0 is kUnitLuminance cd/m2.
     bool is_absolute = false;
     /// Factor on the decoded numbers, > 0. It is applied with the exposure, before values are
     /// limited to +-kHalfMax.
@@ -82,8 +82,9 @@ struct SourceColor {
 /// @throws Error  with the nearest name
 [[nodiscard]] TONEWRIGHT_API SourceColor find_source_color(std::string_view name);
 
-/// Luminance of scene-linear 1.0 on OpenColorIO's HDR displays, cd/m2.
-inline constexpr double kReferenceWhite = 100;
+/// Luminance of linear 1.0 on OpenColorIO's HDR displays, and the default of `reference_white`,
+/// cd/m2. It is not the reference white of Report ITU-R BT.2408, which is 203 cd/m2.
+inline constexpr double kUnitLuminance = 100;
 
 /// Units of a picture's linear numbers.
 enum class InputUnits : unsigned char {
@@ -114,7 +115,7 @@ struct View {
     /// Id of a display, or `linear`, or `native`.
     std::string display = "srgb";
     /// Luminance of scene-linear 1.0 in absolute sources and on an HDR display, cd/m2.
-    double reference_white = kReferenceWhite;
+    double reference_white = kUnitLuminance;
     Primaries input_primaries = kRec709;
     /// Stored numbers of the source -> light in those primaries. Empty for input spaces.
     Pipeline input_decode = {};
@@ -134,11 +135,11 @@ TONEWRIGHT_API void check_exposure(double stops);
 /// @throws Error    unknown input space or display; exposure or reference white out of range
 [[nodiscard]] TONEWRIGHT_API View make_view(ResolvedOperator op, std::string_view input,
                                             double exposure_stops, std::string_view display,
-                                            double reference_white = kReferenceWhite);
+                                            double reference_white = kUnitLuminance);
 /// The same for a source picture.
 [[nodiscard]] TONEWRIGHT_API View make_view(ResolvedOperator op, SourceColor input,
                                             double exposure_stops, std::string_view display,
-                                            double reference_white = kReferenceWhite);
+                                            double reference_white = kUnitLuminance);
 
 /// True if the display can show all colors of the gamut, without negative channels.
 [[nodiscard]] TONEWRIGHT_API bool is_inside(const Primaries& gamut, const Primaries& display);

@@ -47,7 +47,7 @@ inline TableFile small_table(const std::string& path) {
     TableFile file;
     file.stages = {
         curve_stage(lookup(table, Expr::input())),
-        LatticeStage{Expr::input(), std::make_shared<const Lattice>(2, [nodes] { return nodes; })}};
+        GridStage{Expr::input(), std::make_shared<const Grid>(2, [nodes] { return nodes; })}};
     file.title = "Small";
     if (path.find("stated") != std::string::npos) {
         file.encoding = "log2:-10:6.5";

@@ -92,7 +92,7 @@ TEST(LutOperator, IsWrittenAsOneStage) {
         const ResolvedOperator resolved = resolve(*op, nullptr, settings, "");
         const auto again = parse_operator(definition_of(resolved), "again.tone", small_table);
         const ResolvedOperator read = resolve(*again, nullptr, {}, "");
-        // The lattices are two objects of equal numbers.
+        // The grids are two objects of equal numbers.
         for (const char* display : {"native", "linear", "srgb", "rec2100_pq"}) {
             const auto shown = [&](const ResolvedOperator& of) {
                 return shown_by(build_view(make_view(of, "lin_rec709", 0, display)), 0.1, 0.3, 0.2);

@@ -108,8 +108,8 @@ TEST(GradientEngine, IsTheSlopeOfEveryOperation) {
     std::vector<double> nodes;
     for (int i = 0; i < 3 * 4 * 4 * 4; ++i)
         nodes.push_back(random.uniform(0, 1));
-    const auto cube = std::make_shared<const Lattice>(4, [&] { return nodes; });
-    expect_differences({LatticeStage{sqrt(Expr::input()), cube}}, "lattice");
+    const auto cube = std::make_shared<const Grid>(4, [&] { return nodes; });
+    expect_differences({GridStage{sqrt(Expr::input()), cube}}, "grid");
 }
 
 TEST(GradientEngine, IsTheSlopeOfOperators) {

@@ -233,22 +233,22 @@ TEST(Reference, MovesWithItsTables) {
 }
 
 /// Bad input reaches an exception, never std::terminate.
-TEST(Reference, EnginesThrowWhatALatticeThrows) {
+TEST(Reference, EnginesThrowWhatAGridThrows) {
     int calls = 0;
-    const auto lattice = std::make_shared<const Lattice>(2, [&]() -> std::vector<double> {
+    const auto grid = std::make_shared<const Grid>(2, [&]() -> std::vector<double> {
         if (++calls == 1) throw std::runtime_error("no file");
         if (calls == 2) return {1, 2, 3};
         return std::vector<double>(24, 0.25);
     });
-    const Pipeline pipeline = {LatticeStage{kX, lattice}};
+    const Pipeline pipeline = {GridStage{kX, grid}};
     EXPECT_THROW(ReferenceEngine{pipeline}, std::runtime_error);
     EXPECT_THROW(SimdEngine{pipeline}, Error) << "three numbers are too few";
     // After a failure the next call tries again.
     EXPECT_EQ(ReferenceEngine(pipeline)({0, 1, 0}), (Vector3{0.25, 0.25, 0.25}));
-    EXPECT_EQ((*lattice)(0, 0.5, 0.5, 0.5), 0.25);
+    EXPECT_EQ((*grid)(0, 0.5, 0.5, 0.5), 0.25);
     EXPECT_EQ(calls, 3);
 
-    const Lattice broken(2, [] { return std::vector<double>(); });
+    const Grid broken(2, [] { return std::vector<double>(); });
     EXPECT_THROW((void)broken(0, 0.5, 0.5, 0.5), Error);
     EXPECT_THROW((void)broken(0.5, 0.5, 0.5), Error);
     EXPECT_THROW((void)broken.gradient(0, 0.5, 0.5, 0.5), Error);

@@ -469,10 +469,10 @@ std::vector<float> test_colors() {
     return set.rgb;
 }
 
-TEST(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
+TEST(Simd, GridsAreInterpolatedAsTheReferenceDoes) {
     // Three channels of their own at places whose fractions have every order; one channel read
     // alone; coordinates and results that are double (steep) and float.
-    const auto lattice = std::make_shared<const Lattice>(5, [] {
+    const auto grid = std::make_shared<const Grid>(5, [] {
         SampleRandom random(3);
         std::vector<double> nodes(3 * 125);
         for (double& x : nodes)
@@ -480,7 +480,7 @@ TEST(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
         return nodes;
     });
     const Expr x = Expr::input();
-    const LatticeStage stage{(log2(max(x, 0x1p-8)) + 8) / 16, lattice};
+    const GridStage stage{(log2(max(x, 0x1p-8)) + 8) / 16, grid};
     std::vector<float> rgb = {0, 0, 0, 1, 1, 1, 256, 256, 256, 1e4F, -1, 7};
     SampleRandom random(4);
     for (int i = 0; i < 3 * 5000; ++i)

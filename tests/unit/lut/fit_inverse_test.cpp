@@ -37,7 +37,7 @@ struct Errors {
 
 /// Of codes that scenes make, after the cube and the view again.
 Errors errors_of(const InverseCubeProblem& problem, const std::vector<double>& nodes) {
-    const Lattice cube(problem.edge, [&] { return nodes; });
+    const Grid cube(problem.edge, [&] { return nodes; });
     const ReferenceEngine before(problem.before);
     const ReferenceEngine forward(problem.forward);
     const ReferenceEngine place({curve_stage(problem.place)});

@@ -118,8 +118,8 @@ TEST(MeasureLut, IsNeverBelowTheErrorOfTheSamples) {
         double worst = 0;
         int inside = 0;
         for (std::size_t i = 0; i < samples.size(); ++i) {
-            // The lattices and grays are the same whatever the number of random colors.
-            if (samples.kind[i] != SampleKind::lattice && samples.kind[i] != SampleKind::gray)
+            // The grids and grays are the same whatever the number of random colors.
+            if (samples.kind[i] != SampleKind::grid && samples.kind[i] != SampleKind::gray)
                 continue;
             const float* v = &samples.rgb[3 * i];
             const bool is_inside =

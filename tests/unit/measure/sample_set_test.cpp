@@ -42,7 +42,7 @@ TEST(Probes, AreTheSameOnEveryCall) {
 TEST(Probes, CountsAreAsAsked) {
     const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {7, 2000});
     EXPECT_EQ(set.rgb.size(), 3 * set.size());
-    EXPECT_EQ(count_of(set, SampleKind::lattice), 3U * 5 * 7 * 7 * 7) << "3 gamuts, 5 exposures";
+    EXPECT_EQ(count_of(set, SampleKind::grid), 3U * 5 * 7 * 7 * 7) << "3 gamuts, 5 exposures";
     EXPECT_EQ(count_of(set, SampleKind::random), 2000U);
     EXPECT_EQ(count_of(set, SampleKind::picture), 0U);
     for (const SampleKind kind :
@@ -50,7 +50,7 @@ TEST(Probes, CountsAreAsAsked) {
         EXPECT_GT(count_of(set, kind), 20U) << static_cast<int>(kind);
     }
     const SampleSet standard = make_sample_set(find_input_space("lin_rec709"));
-    EXPECT_EQ(count_of(standard, SampleKind::lattice), 3U * 5 * 33 * 33 * 33);
+    EXPECT_EQ(count_of(standard, SampleKind::grid), 3U * 5 * 33 * 33 * 33);
     EXPECT_EQ(count_of(standard, SampleKind::random), 100000U);
 }
 
@@ -126,7 +126,7 @@ TEST(Probes, KindsAreWhatTheyAreCalled) {
     EXPECT_TRUE(has_nan && has_infinity && has_largest);
 }
 
-TEST(Probes, LatticesReachTheCornersOfTheirGamuts) {
+TEST(Probes, GridsReachTheCornersOfTheirGamuts) {
     // In Rec.2020 the red corner of Rec.2020 is (g, 0, 0) at each of five exposures, and that of
     // Rec.709 is g times BT.2087's first column.
     const SampleSet set = make_sample_set(find_input_space("lin_rec2020"), {3, 10});
@@ -134,7 +134,7 @@ TEST(Probes, LatticesReachTheCornersOfTheirGamuts) {
         for (const Vector3& corner : {Vector3{1, 0, 0}, {0.6274, 0.0691, 0.0164}}) {
             bool found = false;
             for (std::size_t i = 0; i < set.size(); ++i) {
-                if (set.kind[i] != SampleKind::lattice) continue;
+                if (set.kind[i] != SampleKind::grid) continue;
                 double away = 0;
                 for (std::size_t c = 0; c < 3; ++c) {
                     away = std::max(away, std::fabs(static_cast<double>(set.rgb[3 * i + c]) -

@@ -29,7 +29,7 @@ double p999_of(const std::string& display, const std::string& input) {
     // The fit draws its colors from other seeds, and no grid.
     const SampleSet samples = make_sample_set(
         find_input_space(input),
-        {.lattice_edge = count_of(33, 17), .random_count = count_of(100000U, 20000U)});
+        {.gamut_grid_size = count_of(33, 17), .random_count = count_of(100000U, 20000U)});
     std::vector<float> light;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (!samples.is_non_negative(i)) continue;

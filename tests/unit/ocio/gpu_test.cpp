@@ -50,7 +50,7 @@ TEST(ShaderGpu, GlslShowsTheReference) {
         GTEST_SKIP() << reason;
     const SampleSet samples = make_sample_set(
         find_input_space("lin_rec709"),
-        {.lattice_edge = count_of(33, 9), .random_count = count_of(100000U, 5000U)});
+        {.gamut_grid_size = count_of(33, 9), .random_count = count_of(100000U, 5000U)});
     for (const OperatorVariant& variant : tested_variants()) {
         ShaderRequest request;
         request.view =
@@ -107,8 +107,8 @@ double worst_error(const Shader& shader, const View& view, const std::vector<flo
 TEST(ShaderGpu, FittedCurvesShowTheReference) {
     if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty())
         GTEST_SKIP() << reason;
-    SampleSet samples =
-        make_sample_set(find_input_space("lin_rec709"), {.lattice_edge = 9, .random_count = 5000});
+    SampleSet samples = make_sample_set(find_input_space("lin_rec709"),
+                                        {.gamut_grid_size = 9, .random_count = 5000});
     std::replace_if(
         samples.rgb.begin(), samples.rgb.end(), [](float x) { return std::isnan(x); }, 0.18F);
     for (const char* op : {"agx_sobotka", "uchimura", "lottes", "hable_piecewise", "aces_13"}) {
@@ -128,25 +128,25 @@ TEST(ShaderGpu, FittedCurvesShowTheReference) {
     }
 }
 
-/// Colors through a table and a lattice of `edge` nodes a side, in front of an operator that limits
+/// Colors through a table and a grid of `edge` nodes a side, in front of an operator that limits
 /// them to [0, 1].
 View through_tables(int edge, Table table) {
     View view = make_view(resolve_operator("clamp"), "lin_rec709", 0, "native");
     view.input = "through tables";
     view.input_decode = {
         curve_stage(lookup(std::make_shared<const Table>(std::move(table)), Expr::input())),
-        LatticeStage{Expr::input(), std::make_shared<const Lattice>(edge, [edge] {
-                         std::vector<double> nodes;
-                         SampleRandom random(7);
-                         for (int i = 0; i < 3 * edge * edge * edge; ++i)
-                             nodes.push_back(random.uniform(0, 1));
-                         return nodes;
-                     })}};
+        GridStage{Expr::input(), std::make_shared<const Grid>(edge, [edge] {
+                      std::vector<double> nodes;
+                      SampleRandom random(7);
+                      for (int i = 0; i < 3 * edge * edge * edge; ++i)
+                          nodes.push_back(random.uniform(0, 1));
+                      return nodes;
+                  })}};
     return view;
 }
 
 // The same numbers from arrays and from textures: tables with one row of texels and with more, at
-// equal and at other distances, in lines and in steps, and a lattice.
+// equal and at other distances, in lines and in steps, and a grid.
 TEST(ShaderGpu, ArraysAndTexturesHoldTheSameNumbers) {
     if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty())
         GTEST_SKIP() << reason;
@@ -180,7 +180,7 @@ TEST(ShaderGpu, ArraysAndTexturesHoldTheSameNumbers) {
                 }
                 EXPECT_EQ(got[0], got[1]) << count << " " << has_positions;
                 std::size_t far = 0;
-                // 700 cells of noise and 4 of the lattice in three channels: a rounding of 2^-24
+                // 700 cells of noise and 4 of the grid in three channels: a rounding of 2^-24
                 // grows 8400 times.
                 for (std::size_t i = 0; i < rgb.size(); ++i)
                     far += std::fabs(static_cast<double>(got[0][i]) - truth[i]) > 5e-4 ? 1 : 0;

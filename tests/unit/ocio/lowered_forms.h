@@ -60,7 +60,7 @@ inline std::vector<double> reference(const Pipeline& pipeline, const std::vector
     return out;
 }
 
-/// Grays, lattices, saturated and dark colors; all channels >= 0 and finite.
+/// Grays, grids, saturated and dark colors; all channels >= 0 and finite.
 inline std::vector<float> positive_colors() {
     const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {9, 20000});
     std::vector<float> rgb;

@@ -39,8 +39,8 @@ std::array<double, 3> run(const Tape& tape, const std::array<float, 3>& color, c
             value[i] = static_cast<double>(static_cast<float>(step.value));
             continue;
         }
-        exact = step.op == ExprOp::lattice ? (*step.lattice)(step.input, a, b, value[step.c])
-                                           : scalar_op(step.op, a, b, value[step.c], step.table);
+        exact = step.op == ExprOp::grid ? (*step.grid)(step.input, a, b, value[step.c])
+                                        : scalar_op(step.op, a, b, value[step.c], step.table);
         const double allowed = rounding_of(step.op, std::fabs(exact), {a, a}, {b, b}).vulkan;
         // Correctly rounded: a float stays what it is.
         const bool is_exact = (step.op == ExprOp::add || step.op == ExprOp::subtract ||

@@ -26,7 +26,7 @@ TEST(Language, EveryLanguageHasFacts) {
         for (const char* part : {"{condition}", "{yes}", "{no}"})
             EXPECT_NE(std::string(facts.choose).find(part), std::string::npos) << info.id;
         // A 3D LUT needs a texture, or an array of 37^3 colors and more.
-        if (info.holds_lattices) {
+        if (info.holds_grids) {
             EXPECT_TRUE(*facts.fetch != '\0' || facts.largest_array > 3U * 37 * 37 * 37) << info.id;
         }
     }

@@ -13,7 +13,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 TEST(ShaderProgram, ComputesThePipeline) {
-    // A curve, a matrix, a norm, branches, a lattice.
+    // A curve, a matrix, a norm, branches, a grid.
     for (const char* name :
          {"hable", "aces_hill", "reinhard:luminance", "khronos_neutral", "agx_blender"}) {
         const Pipeline pipeline =

@@ -32,12 +32,12 @@ TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
             names.insert(shader_function_name(request_of(variant.name, variant.look))).second)
             << variant.name;
         if (count++ % count_of(1, 5) != 0) continue;
-        const bool is_lattice = reads_lattice(request_of(variant.name, variant.look).view);
+        const bool is_grid = reads_grid(request_of(variant.name, variant.look).view);
         const ShaderErrors errors = measure_shader(request_of(variant.name, variant.look, "srgb"));
         for (const ShaderLanguageInfo& language : shader_languages()) {
             const ShaderRequest request =
                 request_of(variant.name, variant.look, "srgb", language.language);
-            if (is_lattice && !language.holds_lattices) {
+            if (is_grid && !language.holds_grids) {
                 EXPECT_NE(error_of(request).find("expected a language with textures"),
                           std::string::npos)
                     << variant.name << " " << language.id;
@@ -51,7 +51,7 @@ TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
             const std::string code = shader.text.substr(shader.text.find("\n\n"));
             EXPECT_EQ(code.find(" inf"), std::string::npos) << variant.name;
             EXPECT_EQ(code.find(" nan"), std::string::npos) << variant.name;
-            EXPECT_EQ(shader.textures.empty(), !is_lattice || language.id == "c")
+            EXPECT_EQ(shader.textures.empty(), !is_grid || language.id == "c")
                 << variant.name << " " << language.id;
             for (const ShaderTexture& texture : shader.textures) {
                 EXPECT_NE(shader.text.find(" " + texture.name), std::string::npos);

@@ -14,7 +14,7 @@ namespace {
 VerifyOptions quick() {
     VerifyOptions options;
     options.operators = {resolve_operator("reinhard")};
-    options.lattice_edge = 3;
+    options.gamut_grid_size = 3;
     options.random_count = 200;
     options.with_gpu = false;
     options.shaders = {"none"};

@@ -12,12 +12,12 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Tetrahedron of a position: four nodes, starting with the one nearest to the origin. Each next
 /// node is one step along another coordinate, in the order of the fractions.
-struct LatticePlace {
+struct GridPlace {
     std::array<std::size_t, 4> node{};
     std::array<double, 4> weight{};
     std::array<std::size_t, 3> axis{0, 1, 2};
 
-    LatticePlace(int edge, const std::array<double, 3>& at) noexcept {
+    GridPlace(int edge, const std::array<double, 3>& at) noexcept {
         const auto n = static_cast<std::size_t>(edge);
         const std::array<std::size_t, 3> stride = {n * n, n, 1};
         std::array<double, 3> fraction{};
@@ -50,7 +50,7 @@ struct LatticePlace {
             sum += weight[i] * channel[3 * node[i]];
         return sum;
     }
-    /// Lattice::gradient().
+    /// Grid::gradient().
     /// @param at  the position
     [[nodiscard]] std::array<double, 3> gradient(const double* channel, int edge,
                                                  const std::array<double, 3>& at) const noexcept {

@@ -15,9 +15,9 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// The report page computes lattices from their formulas instead of holding them.
-TEST(LatticeFormula, GivesTheNodes) {
-    std::set<const Lattice*> seen;
+/// The report page computes grids from their formulas instead of holding them.
+TEST(GridFormula, GivesTheNodes) {
+    std::set<const Grid*> seen;
     const std::vector<Settings> all = {
         {}, {{"limit", "p3d65"}}, {{"limit", "rec2020"}}, {{"range", "hdr"}}};
     for (const Settings& settings : all) {
@@ -25,11 +25,11 @@ TEST(LatticeFormula, GivesTheNodes) {
             const ResolvedOperator op = resolve_operator("agx_blender", settings, look);
             const std::array<Expr, 3> rgb = compose(op.build());
             for (const Expr& e : nodes_of(rgb)) {
-                if (e.op() != ExprOp::lattice || !seen.insert(e.lattice().get()).second) continue;
-                const Lattice& lattice = *e.lattice();
-                ASSERT_TRUE(lattice.has_formula());
-                const std::vector<Expr> formula = lattice.formula();
-                const auto edge = static_cast<std::size_t>(lattice.edge());
+                if (e.op() != ExprOp::grid || !seen.insert(e.grid().get()).second) continue;
+                const Grid& grid = *e.grid();
+                ASSERT_TRUE(grid.has_formula());
+                const std::vector<Expr> formula = grid.formula();
+                const auto edge = static_cast<std::size_t>(grid.edge());
                 // The nodes of the guard rail are rounded to seven decimals: where the logarithms
                 // of the two differ in their last bit, the decimal may be the next one.
                 const double bound = edge == 37 ? 1.01e-7 : 1e-12;
@@ -42,7 +42,7 @@ TEST(LatticeFormula, GivesTheNodes) {
                                                       place(i)};
                     for (std::size_t c = 0; c < 3; ++c)
                         worst = std::max(
-                            worst, std::abs(evaluate(formula[c], at) - lattice.nodes()[3 * i + c]));
+                            worst, std::abs(evaluate(formula[c], at) - grid.nodes()[3 * i + c]));
                 }
                 EXPECT_LE(worst, bound) << edge << "^3, " << op.label;
             }

@@ -30,8 +30,10 @@ cmake --build "$build/core"
 export TONEWRIGHT_TEST_ALL=0
 run() { qemu-aarch64-static -L /usr/aarch64-linux-gnu "$build/core/bin/$1" --gtest_brief=1 "${@:2}"; }
 bound='*/Law.SimdIsTotalAndWithinItsBound/*'
-# These compare every view of every operator, or fit LUTs: minutes each in QEMU. None of them depends on the vectors.
-slow='Reference.IsEvaluateBitForBit:*Fit*:*Shipped*:*SimdOperator.IsTotal*'
+# These compare every view of every operator, fit LUTs or write all shaders: minutes each in QEMU. None of them depends on
+# the vectors.
+slow='Reference.IsEvaluateBitForBit:*Fit*:*Shipped*:*SimdOperator.IsTotal*:BakeLut.TheDefault*:Bake.AMaximalError*'
+slow+=':Ringing.Repairs*:Shader.EveryVariant*:Shader.FiniteInFloat*:LiveParameters.*'
 shares=16
 share=${TONEWRIGHT_TEST_SHARE:-$((16#$(git -C "$tree" rev-parse HEAD | cut -c1-8)))}
 share=$((share % shares))

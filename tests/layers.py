@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Dependencies between the folders of src/ run one way; this reads the #include lines. No text below the front ends has an
-option of the command: errors and warnings there refer to parameters, `<<size=65>>` (error.h).
+"""Dependencies between the folders of src/ run one way, and so do those between its files (a header and its source are one
+unit); this reads the #include lines. No text below the front ends has an option of the command: errors and warnings there
+refer to parameters, `<<size=65>>` (error.h).
 
 Usage: layers.py SRC
 """
+import graphlib
 import pathlib
 import re
 import sys
@@ -67,11 +69,22 @@ OTHER_PROGRAMS = re.compile(r"oiiotool|mpv|glslangValidator|iscolorspace")
 # Text of the files that the command writes, for its users.
 GENERATED = {("ocio/operator_facts.cpp", "operator"), ("ocio/added_record.cpp", "into"),
              ("ocio/added_record.cpp", "update"), ("ocio/added_record.cpp", "remove")}
+# Headers whose types the parts behind them use: the files are one unit.
+PARTS = {
+    "engine/curve_fit": "engine/compiled_curve",
+    "formula/glsl_cursor": "formula/glsl", "formula/glsl_frames": "formula/glsl", "formula/glsl_parser": "formula/glsl",
+}
 LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
 
 
 def folder_of(parts):
     return "/".join(parts[:2]) if "/".join(parts[:2]) in BELOW else parts[0]
+
+
+def unit_of(path):
+    """A file's name without its ending; a public header has one of its own."""
+    name = pathlib.PurePath(path).with_suffix("").as_posix().removeprefix("include/")
+    return PARTS.get(name, name)
 
 
 def own_options(src):
@@ -90,6 +103,7 @@ def options_in(line, options):
 
 def main(src: pathlib.Path) -> int:
     failures, count = [], 0
+    included = {}  # units by unit
     options = own_options(src)
     if len(options) < 100:
         failures.append(f"only {len(options)} options are found in cli/")
@@ -109,6 +123,8 @@ def main(src: pathlib.Path) -> int:
             count += 1
             target = match.group(2)
             first = target.split("/")[0]
+            if match.group(1) == '"' and (one := unit_of(path.relative_to(src))) != (other := unit_of(target)):
+                included.setdefault(one, set()).add(other)
             where = f"{path.relative_to(src)}:{number}: {folder} includes {target}"
             if first == "tonewright":
                 owner = PUBLIC.get(pathlib.Path(target).stem)
@@ -122,6 +138,10 @@ def main(src: pathlib.Path) -> int:
                     failures.append(where)
             elif first in THIRD_PARTY and not {folder, "/".join(parts)} & set(THIRD_PARTY[first]):
                 failures.append(where)
+    try:
+        graphlib.TopologicalSorter(included).prepare()
+    except graphlib.CycleError as e:
+        failures.append("a circle: " + " <- ".join(e.args[1]))
     for failure in failures:
         print(failure)
     print(f"layers: {count} includes read")

@@ -29,14 +29,6 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace fs = std::filesystem;
 
-std::string reason_of(int error_number) { return std::generic_category().message(error_number); }
-
-Problem problem_of_system(int error_number) {
-    return {.kind = Problem::Kind::file,
-            .value = reason_of(error_number),
-            .error_number = error_number};
-}
-
 namespace {
 
 /// The final target, after symbolic links.

@@ -12,14 +12,6 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The message of an errno.
-[[nodiscard]] TONEWRIGHT_API std::string reason_of(int error_number);
-/// The system's error as the problem of a file, which within() adds.
-[[nodiscard]] TONEWRIGHT_API Problem problem_of_system(int error_number);
-
-/// A file that is written under a temporary name beside its target and gets the target's name when
-/// it is complete. A failed or killed run leaves the old file whole.
-///
 /// Lives while a thread creates a file, or opens one by its name: what removes unfinished files
 /// waits for its end (a second at most). Once they are being removed, a thread that begins waits
 /// here for the end of the process.
@@ -31,6 +23,9 @@ class TONEWRIGHT_API FileCreation {
     FileCreation& operator=(const FileCreation&) = delete;
 };
 
+/// A file that is written under a temporary name beside its target and gets the target's name when
+/// it is complete. A failed or killed run leaves the old file whole.
+///
 /// The temporary name is `.<stem>.<machine>.<pid>.<random>.tmp.<extension>`. The extension comes
 /// last because it selects the format. Nobody can guess the name and put a link there.
 class TONEWRIGHT_API AtomicFile {

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "base/atomic_file.h"
 #include "base/system_files.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -7,14 +7,27 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
+#include "tonewright/error.h"
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
 // What this folder asks of the operating system: system_files_posix.cpp, system_files_windows.cpp.
 // An int that is no descriptor is 0 or an errno; a descriptor of -1 comes with one in `errno`.
+
+/// The message of an errno.
+[[nodiscard]] inline std::string reason_of(int error_number) {
+    return std::generic_category().message(error_number);
+}
+/// The system's error as the problem of a file, which within() adds.
+[[nodiscard]] inline Problem problem_of_system(int error_number) {
+    return {.kind = Problem::Kind::file,
+            .value = reason_of(error_number),
+            .error_number = error_number};
+}
 
 /// Names the machine and the container, within which a process id means one process.
 [[nodiscard]] std::string machine_and_container();

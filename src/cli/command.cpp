@@ -2,7 +2,6 @@
 #include "cli/command.h"
 #include "cli/messages.h"
 #include "cli/options.h"
-#include "cli/picture_commands.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_file.h"
 #include "tonewright/registry.h"
@@ -85,11 +84,15 @@ View ViewOptions::view(const SourceColor& color) const {
     return make_view(resolved(), color, exposure, display, reference_white);
 }
 
+std::function<Lut(const std::string&)>& lut_picture_reader() {
+    static std::function<Lut(const std::string&)> reader;
+    return reader;
+}
+
 const OperatorSet& operator_files() {
     static const OperatorSet files(table_reader([](const std::string& path) {
                                        if (is_lut_picture(path))
-                                           return table_file_of(picture_commands().read_lut(path),
-                                                                path);
+                                           return table_file_of(lut_picture_reader()(path), path);
                                        static const TableReader others = ocio_table_reader();
                                        silence_opencolorio();
                                        return others(path);

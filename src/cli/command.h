@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "tonewright/lut.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
 
@@ -55,6 +57,9 @@ struct ViewOptions {
     [[nodiscard]] View view(const SourceColor& color) const;
 };
 
+/// The reader of LUTs that are pictures, which is in the module with the picture commands. The
+/// program sets it, and so does the module.
+[[nodiscard]] std::function<Lut(const std::string& path)>& lut_picture_reader();
 /// The reader of .tone files and LUTs as operators, for all commands.
 [[nodiscard]] const OperatorSet& operator_files();
 /// Prints the operator's caution, each text once.

@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "base/system_files.h"
 #include "cli/archive.h"
 #include "cli/command.h"
 #include "cli/elapsed_line.h"

@@ -8,11 +8,10 @@
 #include <memory>
 #include <optional>
 
-#include "base/atomic_file.h"
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "base/system_files.h"
 #include "cli/color_line.h"
-#include "cli/picture_commands.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
 #include "ocio/gpu.h"
@@ -125,8 +124,7 @@ ColorMap map_of_lut(const Options& options) {
     check_lut_options("eval", options.lut, options, color);
     const auto lut = with_memory_for(options.lut.file, [&] {
         return std::make_shared<const LutFile>(
-            open_lut(options.lut.file, options.lut.interpolation,
-                     [](const std::string& path) { return picture_commands().read_lut(path); }));
+            open_lut(options.lut.file, options.lut.interpolation, lut_picture_reader()));
     });
     const Pipeline before =
         before_lut("eval", with_stated_input(options.lut, color.name), options, color);

@@ -21,6 +21,7 @@
 #include "cli/completion.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "cli/picture_commands.h"
 #include "tonewright/definition.h"
 #include "tonewright/error.h"
 #include "tonewright/version.h"
@@ -110,6 +111,9 @@ void ignore_overrides_of_opencolorio() {
 
 int run(int argc, char** argv) {
     const std::string command = argc > 1 ? one_line(argv[1]) + ": " : "";
+    lut_picture_reader() = [](const std::string& path) {
+        return picture_commands().read_lut(path);
+    };
     try {
         const std::unique_ptr<CommandLine> program = make_command_line();
         int exit_code = kOk;

@@ -143,10 +143,7 @@ int run_verify(Options& options) {
     VerifyOptions& verify_options = options.verify;
     if (!options.lut.empty()) {
         print_matches(options.lut,
-                      match_lut(open_lut(options.lut, "auto",
-                                         [](const std::string& path) {
-                                             return picture_commands().read_lut(path);
-                                         }),
+                      match_lut(open_lut(options.lut, "auto", lut_picture_reader()),
                                 resolve_operators(options.operators)),
                       options.json);
         return kOk;

@@ -14,16 +14,6 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// View transform of a view on a display.
-struct DisplayedView {
-    std::string transform;
-    Pipeline stages;
-    const Display* display;
-    /// Name of the view on the display.
-    std::string name;
-    ResolvedOperator op;
-};
-
 /// One view transform for all displays that share it: "AgX", or if there are several, "AgX
 /// (P3-D65)", "AgX (Rec.2020, 1000 nit)".
 [[nodiscard]] std::vector<DisplayedView> displayed_views(

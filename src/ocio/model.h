@@ -83,6 +83,16 @@ struct ConfigModel {
     std::string default_space;
 };
 
+/// View transform of a view on a display.
+struct DisplayedView {
+    std::string transform;
+    Pipeline stages;
+    const Display* display;
+    /// Name of the view on the display.
+    std::string name;
+    ResolvedOperator op;
+};
+
 /// @throws Error  for unknown views, looks and displays, and for names that applications cannot
 ///                use: over 63 bytes, duplicates, an alias that is a role.
 [[nodiscard]] TONEWRIGHT_API ConfigModel make_config_model(const ConfigOptions& options = {});

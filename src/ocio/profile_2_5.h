@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "ocio/config_builder.h"
 #include "ocio/model.h"
+#include "ocio/read_config.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 

@@ -7,7 +7,6 @@
 #include <array>
 
 #include "formula/formula.h"
-#include "shader/print.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -2,6 +2,9 @@
 #include "shader/language.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "base/strings.h"
@@ -324,6 +327,25 @@ const ShaderLanguageInfo& find_shader_language(std::string_view name) {
 const LanguageFacts& facts_of(ShaderLanguage language) {
     return *std::find_if(kFacts.begin(), kFacts.end(),
                          [&](const LanguageFacts& f) { return f.language == language; });
+}
+
+std::string float_literal(double value, const LanguageFacts& language) {
+    // Not the largest float, because its shortest digits lie above it, and WGSL refuses such a
+    // literal.
+    constexpr double kMost = 3e38;
+    value = std::clamp(value, -kMost, kMost);
+    const auto digits_of = [](auto number) {
+        if (std::fpclassify(number) == FP_SUBNORMAL) number = 0;
+        std::array<char, 32> buffer{};
+        return std::string(buffer.data(),
+                           std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr);
+    };
+    const std::string text =
+        language.is_double ? digits_of(value) : digits_of(static_cast<float>(value));
+    const std::size_t exponent = text.find('e');
+    std::string digits = text.substr(0, exponent);
+    if (digits.find('.') == std::string::npos) digits += ".0";
+    return digits + (exponent == std::string::npos ? "" : text.substr(exponent)) + language.suffix;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -63,4 +63,7 @@ struct LanguageFacts {
 
 [[nodiscard]] const LanguageFacts& facts_of(ShaderLanguage language);
 
+/// The shortest decimal that reads back as the same float, with a point.
+[[nodiscard]] std::string float_literal(double value, const LanguageFacts& language);
+
 TONEWRIGHT_NAMESPACE_END

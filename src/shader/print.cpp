@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <span>
 
@@ -641,25 +640,6 @@ PrintedProgram print_program(const ShaderProgram& program, const LanguageFacts& 
                              const std::string& name, const std::vector<std::string>& uniforms,
                              ShaderTables tables) {
     return ProgramPrinter(program, language, name, uniforms, tables).print();
-}
-
-std::string float_literal(double value, const LanguageFacts& language) {
-    // Not the largest float, because its shortest digits lie above it, and WGSL refuses such a
-    // literal.
-    constexpr double kMost = 3e38;
-    value = std::clamp(value, -kMost, kMost);
-    const auto digits_of = [](auto number) {
-        if (std::fpclassify(number) == FP_SUBNORMAL) number = 0;
-        std::array<char, 32> buffer{};
-        return std::string(buffer.data(),
-                           std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr);
-    };
-    const std::string text =
-        language.is_double ? digits_of(value) : digits_of(static_cast<float>(value));
-    const std::size_t exponent = text.find('e');
-    std::string digits = text.substr(0, exponent);
-    if (digits.find('.') == std::string::npos) digits += ".0";
-    return digits + (exponent == std::string::npos ? "" : text.substr(exponent)) + language.suffix;
 }
 
 TONEWRIGHT_NAMESPACE_END

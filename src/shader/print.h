@@ -22,7 +22,4 @@ struct PrintedProgram {
                                            const std::vector<std::string>& uniforms,
                                            ShaderTables tables = ShaderTables::by_size);
 
-/// The shortest decimal that reads back as the same float, with a point.
-[[nodiscard]] std::string float_literal(double value, const LanguageFacts& language);
-
 TONEWRIGHT_NAMESPACE_END

@@ -20,8 +20,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "base/atomic_file.h"
 #include "base/strings.h"
+#include "base/system_files.h"
 #include "cli/messages.h"
 #include "tonewright/error.h"
 

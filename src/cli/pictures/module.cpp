@@ -10,7 +10,10 @@ namespace {
 class Commands : public PictureCommands {
   public:
     // In a static build the module has a list of unfinished files of its own.
-    Commands() { remove_unfinished_files_on_signals(); }
+    Commands() {
+        remove_unfinished_files_on_signals();
+        lut_picture_reader() = load_lut_picture;
+    }
     void use_messages(const MessageOptions& options) const override { message_options() = options; }
     [[nodiscard]] int apply(const ApplyOptions& options) const override {
         return run_apply(options);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <functional>
@@ -14,11 +15,9 @@
 #include "cli/color_line.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
-#include "ocio/gpu.h"
-#include "ocio/operator_facts.h"
-#include "ocio/transforms.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
+#include "verify/backends.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -31,7 +30,7 @@ struct Options : ViewOptions {
     LutOptions lut;
 };
 
-/// Maps `count` triplets.
+/// Maps triplets.
 using ColorMap = std::function<void(const double* in, double* out, std::size_t count)>;
 
 /// Standard input as triplets, one a line, separated by commas or spaces; `#` begins a comment. It
@@ -110,7 +109,7 @@ class LineEvaluator {
 };
 
 /// For an engine that takes floats.
-ColorMap through_floats(std::function<void(const float*, float*, std::size_t)> run) {
+ColorMap through_floats(ColorRun run) {
     return [run = std::move(run)](const double* in, double* out, std::size_t count) {
         const std::vector<float> from(in, in + 3 * count);
         std::vector<float> to(from.size());
@@ -164,13 +163,12 @@ void check_has_operator(const Options& options) {
 ColorMap map_of_operator(const Options& given) {
     Options options = given;
     check_has_operator(options);
-    enum Engine : std::size_t { kReference, kSimd, kOcio, kOcioGpu };
     const std::size_t kind =
         find_choice("engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
     take_lut_options("eval", options.lut, options, true);
     const View view = view_of(options);
     const Pipeline pipeline = pipeline_of(options, view);
-    if (kind == kReference) {
+    if (kind == 0) {
         const auto engine = std::make_shared<const ReferenceEngine>(pipeline);
         return [engine](const double* in, double* out, std::size_t count) {
             std::array<std::vector<double>, 3> plane;
@@ -182,17 +180,9 @@ ColorMap map_of_operator(const Options& given) {
                 out[i] = plane[i % 3][i / 3];
         };
     }
-    const auto of = [](const auto& engine) {
-        return through_floats([engine](const float* in, float* out, std::size_t count) {
-            engine->run_rgb(in, out, count);
-        });
-    };
-    if (kind == kSimd)
-        return of(std::make_shared<const SimdEngine>(pipeline, view.op.op->bounds.simd_goal));
-    const LowerOptions lowering{.fits_cubes = lower_options(*view.op.op).fits_cubes};
-    const auto processor = make_processor(lower_to_ocio(pipeline, lowering).ops);
-    if (kind == kOcio) return of(std::make_shared<OcioCpu>(processor));
-    return of(std::make_shared<OcioGpu>(processor));
+    constexpr std::array kBackends = {Backend::Id::simd, Backend::Id::ocio_cpu,
+                                      Backend::Id::ocio_gpu};
+    return through_floats(find_backend(kBackends.at(kind - 1)).start({view, pipeline}));
 }
 
 int run_explain(Options options) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <set>
 
@@ -23,6 +22,7 @@
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
+#include "verify/backends.h"
 #include "verify/private_folder.h"
 #include "verify/shader_runs/shader_run.h"
 
@@ -48,83 +48,6 @@ class TemporaryConfig {
 /// For a folder: its config for any application.
 std::string path_of_config(const std::string& given) {
     return fs::is_directory(given) ? given + "/config.ocio" : given;
-}
-
-bool has_negative_coefficient(const Matrix3& m) {
-    for (const auto& row : m) {
-        for (const double x : row) {
-            if (x < 0) return true;
-        }
-    }
-    return false;
-}
-
-/// Bounds from the structure of a chain, for display code values; an operator may declare others.
-struct Bounds {
-    double simd = 1e-6;
-    double cpu = 3e-7;
-    double gpu = 1e-6;
-    bool is_mixed_metric = false;
-};
-
-/// The largest output of a stage for inputs from -`largest` to `largest`.
-double largest_after(const Stage& stage, double largest) {
-    const auto at = [&](const Expr& f) { return std::fabs(evaluate(f, largest)); };
-    if (const auto* m = std::get_if<MatrixStage>(&stage)) {
-        double sum = 0;
-        for (const auto& row : m->m)
-            sum = std::max(sum, std::fabs(row[0]) + std::fabs(row[1]) + std::fabs(row[2]));
-        return sum * largest;
-    }
-    if (const auto* c = std::get_if<ClampStage>(&stage)) return std::min(largest, c->hi);
-    if (const auto* c = std::get_if<CurveStage>(&stage))
-        return std::max({at(c->f[0]), at(c->f[1]), at(c->f[2])});
-    if (const auto* l = std::get_if<GridStage>(&stage)) {
-        const std::vector<double>& nodes = l->grid->nodes();
-        return *std::max_element(nodes.begin(), nodes.end());
-    }
-    return largest;
-}
-
-Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
-                 const DeclaredBounds& declared) {
-    Bounds b;
-    // Below 1, the error is that of float32 numbers around 1. Above, it grows with the curve, up to
-    // the display's clamp.
-    double largest_input = 4096;
-    const auto largest = [&](const Expr& f) { return std::max(1.0, evaluate(f, largest_input)); };
-    const auto allow = [&](double cpu, double gpu) {
-        b.cpu = std::max(b.cpu, cpu);
-        b.gpu = std::max(b.gpu, gpu);
-    };
-    bool may_be_negative = true;
-    for (const Stage& stage : simplify(pipeline)) {
-        // Negative channels cancel in any matrix that mixes them.
-        const auto* m = std::get_if<MatrixStage>(&stage);
-        if (m && (has_negative_coefficient(m->m) || (may_be_negative && mixes_channels(stage))))
-            b.is_mixed_metric = true;
-        if (const auto* c = std::get_if<ClampStage>(&stage); c && c->lo >= 0)
-            may_be_negative = false;
-        // xyY and HSV subtract numbers as large as the brightest channel.
-        if (const auto* t = std::get_if<ToneScaleStage>(&stage))
-            allow(2e-5 * largest(t->f), 5e-5 * largest(t->f));
-        if (const auto* h = std::get_if<HuePreservingStage>(&stage))
-            allow(3e-7 * largest(h->f), 1e-6 * largest(h->f));
-        if (const auto* h = std::get_if<HexconeStage>(&stage))
-            allow(1e-5 * largest(h->value), 3e-5 * largest(h->value));
-        if (std::holds_alternative<GridStage>(stage)) allow(1e-5, 5e-5);
-        largest_input = largest_after(stage, largest_input);
-    }
-    if (declared.simd > 0) b.simd = declared.simd;
-    if (declared.ocio_cpu > 0) b.cpu = declared.ocio_cpu;
-    if (declared.ocio_gpu > 0) b.gpu = declared.ocio_gpu;
-    if (!lowered.is_exact) {  // 65^3 cube: one code of 10 bits
-        const double declared_cube =
-            is_hdr && declared.cube_hdr > 0 ? declared.cube_hdr : declared.cube;
-        const double cube = declared_cube > 0 ? declared_cube : 1.0 / 1023;
-        allow(cube, cube);
-    }
-    return b;
 }
 
 /// OpenColorIO's GPU path reads LUTs with filters. Those of GPUs have 8-bit weights: two entries of
@@ -289,26 +212,6 @@ double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOpe
     return bound;
 }
 
-/// OpenColorIO's built-in transform that equals the view's operator, on the view's display; null if
-/// there is none, or if this OpenColorIO lacks it.
-OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
-    const std::string style = builtin_style(view.op);
-    const auto registry = OCIO::BuiltinTransformRegistry::Get();
-    bool is_known = false;
-    for (std::size_t i = 0; i < registry->getNumBuiltins(); ++i)
-        is_known = is_known || style == registry->getBuiltinStyle(i);
-    if (!is_known) return nullptr;
-    const Display& display = find_display(view.display);
-    Pipeline behind = {MatrixStage{inverse(rgb_to_xyz_d65(display.primaries))},
-                       ClampStage{0, display_limit(view.op, display).peak}};
-    behind.insert(behind.end(), display.encode.begin(), display.encode.end());
-    const Matrix3 to_aces = rgb_to_rgb(find_input_space(view.input).primaries, kAP0);
-    LoweredOps ops = lower_to_ocio({MatrixStage{to_aces}}).ops;
-    ops.push_back({BuiltinOp{style}});
-    append(ops, lower_to_ocio(behind).ops);
-    return make_processor(ops);
-}
-
 /// Adds rows for the inverse from the config's output space, as applications run it.
 template <class Add>
 void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
@@ -360,45 +263,6 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
             [&](const float* in, float* out, std::size_t n) { gpu.run_rgb(in, out, n); });
 }
 
-double rounded_to_half(double x) {
-    constexpr double largest = 65504;
-    constexpr double smallest_normal = 0x1p-14;
-    const double magnitude = std::min(std::fabs(x), largest);
-    // Eleven bits, or fewer below the normal numbers.
-    const double unit = std::exp2(std::floor(std::log2(std::max(magnitude, smallest_normal))) - 10);
-    return std::copysign(std::nearbyint(magnitude / unit) * unit, x);
-}
-
-/// A model of Blender's viewport, which uploads every table as textures of half floats; everything
-/// else is exact.
-OCIO::ConstProcessorRcPtr with_half_textures(const OCIO::ConstProcessorRcPtr& processor) {
-    const OCIO::GroupTransformRcPtr group =
-        processor->getOptimizedProcessor(OCIO::OPTIMIZATION_DEFAULT)->createGroupTransform();
-    const auto half = [](float x) {
-        return static_cast<float>(rounded_to_half(static_cast<double>(x)));
-    };
-    for (int i = 0; i < group->getNumTransforms(); ++i) {
-        const OCIO::TransformRcPtr part = group->getTransform(i);
-        float r = 0;
-        float g = 0;
-        float b = 0;
-        if (const auto lut = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut1DTransform>(part)) {
-            for (unsigned long k = 0; k < lut->getLength(); ++k) {
-                lut->getValue(k, r, g, b);
-                lut->setValue(k, half(r), half(g), half(b));
-            }
-        }
-        if (const auto cube = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(part)) {
-            const unsigned long n = cube->getGridSize();
-            for (unsigned long k = 0; k < n * n * n; ++k) {
-                cube->getValue(k / (n * n), k / n % n, k % n, r, g, b);
-                cube->setValue(k / (n * n), k / n % n, k % n, half(r), half(g), half(b));
-            }
-        }
-    }
-    return make_processor(group);
-}
-
 /// The config's name for the operator with defaults or with a look; empty if it has other settings.
 std::string view_name(const ResolvedOperator& op) {
     if (op.label == op.op->id) return op.op->view;
@@ -444,13 +308,15 @@ SampleSet every_nth(const SampleSet& all, std::size_t n) {
     return chosen;
 }
 
-VerifyResult measure_all(const VerifyOptions& options,
-                         const std::function<void(const ParityRow&)>& on_row) {
-    // The views of a config from Tonewright, on its displays. In other configs, a view such as AgX
-    // may be a different one.
-    const bool is_of_config = options.operators.empty() && !options.config.empty();
-    OCIO::ConstConfigRcPtr config;
-    if (!options.config.empty()) config = read_config(path_of_config(options.config));
+/// The views of a config from Tonewright, on its displays. In other configs, a view such as AgX may
+/// be a different one.
+bool checks_views_of_config(const VerifyOptions& options) {
+    return options.operators.empty() && !options.config.empty();
+}
+
+/// @param config  null: there is none
+std::vector<View> choose_views(const VerifyOptions& options, const OCIO::ConstConfigRcPtr& config) {
+    const bool is_of_config = checks_views_of_config(options);
     for (const ResolvedOperator& op : options.operators)
         require_no_surroundings(*op.op);
     const std::vector<ResolvedOperator> operators =
@@ -477,192 +343,233 @@ VerifyResult measure_all(const VerifyOptions& options,
             views.push_back(std::move(view));
         }
     }
+    return views;
+}
 
-    // Tonewright's shaders do not read a config.
-    ShaderRuns shaders;
-    if (options.with_gpu && !is_of_config) {
-        shaders = make_shader_runs(options.shaders);
-    } else {
-        (void)languages_to_run(options.shaders);  // wrong names are errors without a run, too
-    }
-
-    // Every view on every display, in a minute.
+SampleSet choose_samples(const VerifyOptions& options) {
     SampleSetOptions counts = {options.gamut_grid_size, options.random_count};
-    if (is_of_config) {
+    if (checks_views_of_config(options)) {  // every view on every display, in a minute
         counts.gamut_grid_size = std::min(counts.gamut_grid_size, 17);
         counts.random_count = std::min<std::size_t>(counts.random_count, 50000);
     }
-    SampleSet samples = make_sample_set(input, counts);
+    SampleSet samples = make_sample_set(find_input_space(options.input), counts);
     for (std::size_t i = 0; i + 2 < options.picture.size(); i += 3) {
         samples.add(static_cast<double>(options.picture[i]),
                     static_cast<double>(options.picture[i + 1]),
                     static_cast<double>(options.picture[i + 2]), SampleKind::picture);
     }
-    std::optional<TemporaryConfig> fresh;
-    if (!config) {
-        std::vector<ConfigOptions::CustomView> wanted;
-        std::set<std::string> names;
-        for (const ResolvedOperator& op : operators) {
-            const std::string name = view_name(op);
-            if (!name.empty() && names.insert(name).second) wanted.push_back({name, op});
+    return samples;
+}
+
+/// The views of a config with the operators.
+std::vector<ConfigOptions::CustomView> views_of_operators(const std::vector<View>& views) {
+    std::vector<ConfigOptions::CustomView> wanted;
+    std::set<std::string> names;
+    for (const View& view : views) {
+        const std::string name = view_name(view.op);
+        if (!name.empty() && names.insert(name).second) wanted.push_back({name, view.op});
+    }
+    if (wanted.empty()) wanted.push_back({views.front().op.op->view, views.front().op});
+    return wanted;
+}
+
+ShaderRuns choose_shaders(const VerifyOptions& options) {
+    // Tonewright's shaders do not read a config.
+    if (options.with_gpu && !checks_views_of_config(options))
+        return make_shader_runs(options.shaders);
+    (void)languages_to_run(options.shaders);  // wrong names are errors without a run, too
+    return {};
+}
+
+/// The comparison of all backends of a view with the reference.
+class Verification {
+  public:
+    Verification(const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row)
+        : options_(options), on_row_(on_row), is_of_config_(checks_views_of_config(options)) {}
+
+    VerifyResult run() {
+        if (!options_.config.empty()) config_ = read_config(path_of_config(options_.config));
+        const std::vector<View> views = choose_views(options_, config_);
+        shaders_ = choose_shaders(options_);
+        samples_ = choose_samples(options_);
+        few_ = every_nth(samples_, 20);
+        shown_.resize(samples_.rgb.size());
+        std::optional<TemporaryConfig> fresh;
+        if (!config_) {
+            fresh.emplace(views_of_operators(views));
+            config_ = read_config(path_of_config(fresh->folder()));
         }
-        if (wanted.empty()) wanted.push_back({operators.front().op->view, operators.front()});
-        fresh.emplace(wanted);
-        config = read_config(path_of_config(fresh->folder()));
+        for (const View& view : views)
+            add_view(view);
+        return {std::move(rows_), std::move(shaders_.not_executed)};
     }
 
-    std::vector<ParityRow> rows;
-    std::vector<float> shown(samples.rgb.size());
-    const SampleSet few = every_nth(samples, 20);
-    std::vector<std::string> targets = SimdEngine::targets();  // the best one first
-    if (options.only_best_target) targets.resize(1);
-    if (is_of_config) targets.clear();  // our engine does not read it
-    for (const View& view : views) {
-        const Pipeline pipeline = build_view(view);
-        const Comparison comparison(view, samples);
-        const Comparison few_compared(view, few);
-        const DeclaredBounds& declared = view.op.op->bounds;
-        const Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op));
-        const bool is_hdr = find_display(view.display).is_hdr;
-        const Bounds bounds = bounds_of(pipeline, lowered, is_hdr, declared);
-        const auto row_of = [&](const std::string& backend) {
-            ParityRow row;
-            row.op = view.op.label;
-            row.display = view.display;
-            row.backend = backend;
-            return row;
-        };
-        const auto add_row = [&](const ParityRow& row) {
-            rows.push_back(row);
-            if (on_row) on_row(rows.back());
-        };
-        const auto add_note = [&](const std::string& backend, const std::string& note) {
-            ParityRow row = row_of(backend);
-            row.note = note;
-            add_row(row);
-        };
-        const auto add = [&](const Comparison& compared, const std::string& backend, double bound,
-                             bool is_declared, bool mixed, const std::string& lowering,
-                             const auto& run) {
-            ParityRow row = row_of(backend);
-            row.lowering = lowering;
-            row.bound = bound;
-            row.is_mixed_metric = mixed;
-            run();
-            const double unit = backend == "ocio gpu" ? kGpuRounding : 0x1p-23;
-            compared.measure(shown, unit, backend.starts_with("ocio") && lowered.loses_negatives,
-                             true, row);
-            if (is_declared)
-                row.note += (row.note.empty() ? "" : "; ") + ("bound: " + declared.reason);
-            add_row(row);
-        };
+  private:
+    struct Subject {
+        const View& view;
+        Pipeline pipeline = build_view(view);
+        Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op));
+        BackendBounds bounds = backend_bounds(view, pipeline, lowered);
+    };
 
-        std::vector<SimdEngine> engines;
-        if (targets.size() > 1) {
-            engines = SimdEngine::of_all_targets(pipeline, declared.simd_goal);
-        } else if (!targets.empty()) {
-            engines.emplace_back(pipeline, declared.simd_goal);
-        }
-        for (std::size_t t = 0; t < engines.size(); ++t) {
-            const std::string& target = targets[t];
-            // SCALAR takes thirty times as long as the others, with the same code.
-            const bool is_slow = target == "SCALAR";
-            const SampleSet& taken = is_slow ? few : samples;
-            add(is_slow ? few_compared : comparison, "simd " + target, bounds.simd,
-                declared.simd != DeclaredBounds{}.simd, false, "",
-                [&] { engines[t].run_rgb(taken.rgb.data(), shown.data(), taken.size()); });
-        }
-
-        OCIO::ConstProcessorRcPtr processor;
-        std::string lowering = lowered.summary;
-        try {
-            if (const std::string name = view_in_config(config, view); !name.empty()) {
-                processor = config->getProcessor(config_space_name(view.input).c_str(),
-                                                 find_display(view.display).title.c_str(),
-                                                 name.c_str(), OCIO::TRANSFORM_DIR_FORWARD);
-                lowering.insert(0, "config: ");
-            } else {
-                processor = make_processor(lowered.ops);
-                lowering.insert(0, "chain: ");
+    void add_view(const View& view) {
+        const Subject subject{view};
+        const Comparison comparison(view, samples_);
+        if (!is_of_config_) add_engines(subject, comparison);  // our engine does not read it
+        const auto [processor, lowering] = processor_of(subject);
+        for (const Backend& backend : all_backends()) {
+            if (backend.id == Backend::Id::simd || !backend.bound) continue;
+            if (backend.id == Backend::Id::half_textures && !is_of_config_) continue;
+            if (backend.id == Backend::Id::ocio_gpu) {
+                if (is_of_config_) add_inverse(view);
+                if (!options_.with_gpu) continue;
+                if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {
+                    add_note(view, backend.name, "skipped: " + reason);
+                    continue;
+                }
             }
-        } catch (const OCIO::Exception& e) {
-            throw FileError(fmt::format("{}: {} on {}: {}", options.config, view.op.label,
-                                        view.display, one_line(e.what())));
-        }
-        const auto cpu = [&](OCIO::OptimizationFlags flags) {
-            OcioCpu(processor, flags).run_rgb(samples.rgb.data(), shown.data(), samples.size());
-        };
-        add(comparison, "ocio cpu lossless", bounds.cpu, declared.ocio_cpu > 0,
-            bounds.is_mixed_metric, lowering, [&] { cpu(OCIO::OPTIMIZATION_LOSSLESS); });
-        add(comparison, "ocio cpu default", bounds.cpu, declared.ocio_cpu > 0,
-            bounds.is_mixed_metric, lowering, [&] { cpu(OCIO::OPTIMIZATION_DEFAULT); });
-        if (const auto builtin = builtin_processor(view)) {
-            // OpenColorIO's own transform, in float32 throughout, not our lowering.
-            add(comparison, "ocio builtin", 1e-3, false, true, builtin_style(view.op), [&] {
-                OcioCpu(builtin, OCIO::OPTIMIZATION_LOSSLESS)
-                    .run_rgb(samples.rgb.data(), shown.data(), samples.size());
-            });
-        }
-        if (is_of_config) {
-            // Limited only by the display, because Blender chose the precision.
-            add(comparison, "half textures", 1, false, false, lowering, [&] {
-                OcioCpu(with_half_textures(processor), OCIO::OPTIMIZATION_LOSSLESS)
-                    .run_rgb(samples.rgb.data(), shown.data(), samples.size());
-            });
-            rows.back().note = "a model of Blender's viewport";
-        }
-        if (is_of_config) {
-            const std::string space = output_space_name(
-                config_view_name(view_name(view.op), view.op, find_display(view.display)),
-                find_display(view.display).title);
-            add_inverse_space(config, view, space, samples, options.with_gpu, add_row);
-        }
-        if (const std::string reason = OcioGpu::unavailable_reason();
-            options.with_gpu && reason.empty()) {
-            const OcioGpu gpu(processor);
-            add(comparison, "ocio gpu", gpu_bound(bounds.gpu), declared.ocio_gpu > 0,
-                bounds.is_mixed_metric, lowering,
-                [&] { gpu.run_rgb(samples.rgb.data(), shown.data(), samples.size()); });
-        } else if (options.with_gpu) {
-            add_note("ocio gpu", "skipped: " + reason);
+            const ColorRun run = backend.start({view, subject.pipeline, processor});
+            if (!run) continue;
+            run(samples_.rgb.data(), shown_.data(), samples_.size());
+            ParityRow row = row_of(view, backend.name);
+            row.lowering =
+                backend.id == Backend::Id::ocio_builtin ? builtin_style(view.op) : lowering;
+            add_measured(subject, comparison, backend, row);
+            if (backend.id == Backend::Id::half_textures)
+                rows_.back().note = "a model of Blender's viewport";
         }
         std::optional<ShaderErrors> errors;
-        for (const ShaderRuns::Of& shader_run : shaders.runs) {
-            const ShaderLanguageInfo& language = shader_run.language;
-            if (!errors) errors = measure_shader({.view = view});
-            Shader shader;
-            try {
-                shader = write_shader({.view = view, .language = language.language}, &*errors);
-            } catch (const Error&) {
-                if (language.holds_grids) throw;
-                add_note(language.id, "none: it cannot store the operator's tables");
-                continue;
-            }
-            ParityRow row = row_of(language.id);
-            row.bound = shader_bound(shader, is_hdr);
-            row.is_mixed_metric = bounds.is_mixed_metric;
-            row.lowering = shader_run.run->by();
-            try {
-                shader_run.run->run_rgb(shader, samples.rgb.data(), shown.data(), samples.size());
-                comparison.measure(shown, kGpuRounding, false, false, row);
-                if (row.is_ok && shader.errors.in_float > kTenBits)
-                    row.note = "float is not enough";
-            } catch (const Error& e) {
-                row.is_ok = false;
-                row.note = one_line(e.what(), 200);
-            }
-            add_row(row);
+        for (const ShaderRuns::Of& shader : shaders_.runs)
+            add_shader(subject, comparison, shader, errors);
+    }
+
+    [[nodiscard]] static ParityRow row_of(const View& view, const std::string& backend) {
+        ParityRow row;
+        row.op = view.op.label;
+        row.display = view.display;
+        row.backend = backend;
+        return row;
+    }
+    void add(const ParityRow& row) {
+        rows_.push_back(row);
+        if (on_row_) on_row_(rows_.back());
+    }
+    void add_note(const View& view, const std::string& backend, const std::string& note) {
+        ParityRow row = row_of(view, backend);
+        row.note = note;
+        add(row);
+    }
+    /// Adds a row for the colors of `shown_`.
+    void add_measured(const Subject& subject, const Comparison& comparison, const Backend& backend,
+                      ParityRow row) {
+        BackendBound bound = subject.bounds.*backend.bound;
+        const bool is_gpu = backend.id == Backend::Id::ocio_gpu;
+        if (is_gpu) bound.error = gpu_bound(bound.error);
+        row.bound = bound.error;
+        row.is_mixed_metric = bound.is_mixed_metric;
+        comparison.measure(shown_, is_gpu ? kGpuRounding : 0x1p-23,
+                           row.backend.starts_with("ocio") && subject.lowered.loses_negatives, true,
+                           row);
+        if (bound.is_declared) {
+            row.note +=
+                (row.note.empty() ? "" : "; ") + ("bound: " + subject.view.op.op->bounds.reason);
+        }
+        add(row);
+    }
+
+    /// The engine with each instruction set of this processor, the best one first.
+    void add_engines(const Subject& subject, const Comparison& comparison) {
+        const Backend& backend = find_backend(Backend::Id::simd);
+        const Comparison few_compared(subject.view, few_);
+        const double goal = subject.view.op.op->bounds.simd_goal;
+        const std::vector<std::string> targets = SimdEngine::targets();
+        std::vector<SimdEngine> engines;
+        if (targets.size() > 1 && !options_.only_best_target) {
+            engines = SimdEngine::of_all_targets(subject.pipeline, goal);
+        } else {
+            engines.emplace_back(subject.pipeline, goal);
+        }
+        for (std::size_t t = 0; t < engines.size(); ++t) {
+            // SCALAR takes thirty times as long as the others, with the same code.
+            const bool is_slow = targets[t] == "SCALAR";
+            const SampleSet& taken = is_slow ? few_ : samples_;
+            engines[t].run_rgb(taken.rgb.data(), shown_.data(), taken.size());
+            add_measured(subject, is_slow ? few_compared : comparison, backend,
+                         row_of(subject.view, backend.name + " " + targets[t]));
         }
     }
-    return {std::move(rows), std::move(shaders.not_executed)};
-}
+
+    /// The view of the config, or the lowered chain; and its words.
+    std::pair<OCIO::ConstProcessorRcPtr, std::string> processor_of(const Subject& subject) const {
+        const View& view = subject.view;
+        try {
+            if (const std::string name = view_in_config(config_, view); !name.empty()) {
+                return {config_->getProcessor(config_space_name(view.input).c_str(),
+                                              find_display(view.display).title.c_str(),
+                                              name.c_str(), OCIO::TRANSFORM_DIR_FORWARD),
+                        "config: " + subject.lowered.summary};
+            }
+            return {make_processor(subject.lowered.ops), "chain: " + subject.lowered.summary};
+        } catch (const OCIO::Exception& e) {
+            throw FileError(fmt::format("{}: {} on {}: {}", options_.config, view.op.label,
+                                        view.display, one_line(e.what())));
+        }
+    }
+
+    void add_inverse(const View& view) {
+        const Display& display = find_display(view.display);
+        const std::string space = output_space_name(
+            config_view_name(view_name(view.op), view.op, display), display.title);
+        add_inverse_space(config_, view, space, samples_, options_.with_gpu,
+                          [&](const ParityRow& row) { add(row); });
+    }
+
+    /// @param errors  of the shaders of the view; the first call measures them
+    void add_shader(const Subject& subject, const Comparison& comparison,
+                    const ShaderRuns::Of& shader_run, std::optional<ShaderErrors>& errors) {
+        const ShaderLanguageInfo& language = shader_run.language;
+        const View& view = subject.view;
+        if (!errors) errors = measure_shader({.view = view});
+        Shader shader;
+        try {
+            shader = write_shader({.view = view, .language = language.language}, &*errors);
+        } catch (const Error&) {
+            if (language.holds_grids) throw;
+            add_note(view, language.id, "none: it cannot store the operator's tables");
+            return;
+        }
+        ParityRow row = row_of(view, language.id);
+        row.bound = shader_bound(shader, find_display(view.display).is_hdr);
+        row.is_mixed_metric = subject.bounds.cpu.is_mixed_metric;
+        row.lowering = shader_run.run->by();
+        try {
+            shader_run.run->run_rgb(shader, samples_.rgb.data(), shown_.data(), samples_.size());
+            comparison.measure(shown_, kGpuRounding, false, false, row);
+            if (row.is_ok && shader.errors.in_float > kTenBits) row.note = "float is not enough";
+        } catch (const Error& e) {
+            row.is_ok = false;
+            row.note = one_line(e.what(), 200);
+        }
+        add(row);
+    }
+
+    const VerifyOptions& options_;
+    const std::function<void(const ParityRow&)>& on_row_;
+    bool is_of_config_;
+    OCIO::ConstConfigRcPtr config_;
+    ShaderRuns shaders_;
+    SampleSet samples_;
+    SampleSet few_;
+    std::vector<float> shown_;
+    std::vector<ParityRow> rows_;
+};
 
 }  // namespace
 
 VerifyResult verify(const VerifyOptions& options,
                     const std::function<void(const ParityRow&)>& on_row) {
     try {
-        return measure_all(options, on_row);
+        return Verification(options, on_row).run();
     } catch (const OCIO::Exception& e) {
         throw FileError(fmt::format("{}: {}", options.config, one_line(e.what())));
     }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -131,23 +130,9 @@ NumberCheck numbers_in(std::size_t count, double least, double most) {
     };
 }
 
-std::string cache_folder() {
-    const auto from = [](const char* variable) -> fs::path {
-        const char* value = std::getenv(variable);
-        return value ? fs::path(value) : fs::path();
-    };
-    // By the XDG Base Directory Specification, a relative path is ignored.
-    if (const fs::path folder = from("XDG_CACHE_HOME"); folder.is_absolute())
-        return (folder / "tonewright").string();
-    if (const fs::path home = from("HOME"); home.is_absolute())
-        return (home / ".cache" / "tonewright").string();
-    return "";
-}
-
-std::vector<double> cached_numbers(const std::string& name, const std::string& key,
-                                   const NumberCheck& is_usable,
+std::vector<double> cached_numbers(const std::string& folder, const std::string& name,
+                                   const std::string& key, const NumberCheck& is_usable,
                                    const std::function<std::vector<double>()>& make) {
-    const std::string folder = cache_folder();
     if (folder.empty()) return make();
     const fs::path path =
         fs::path(folder) / fmt::format("{}_{}{}", name, content_hash(key), kEnding);

@@ -133,7 +133,7 @@ void bake_chain(const Options& options, const LutRequest& request, LutNodes node
                 const LutApplication* host) {
     const LutChain chain = [&] {
         const ElapsedLine line("bake");
-        return make_lut_chain(request, nodes);
+        return make_lut_chain(request, nodes, user_cache_folder());
     }();
     const PhotographError& photographs = chain.error.photographs;
     if (options.max_error && photographs.p999 > *options.max_error) {

@@ -6,6 +6,8 @@
 #include "tonewright/lut_file.h"
 #include "tonewright/registry.h"
 
+#include <cstdlib>
+#include <filesystem>
 #include <utility>
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -26,6 +28,20 @@ void warn_of(const ResolvedOperator& op) {
     static std::set<std::string> said;
     const std::string text = op.caution();
     if (!text.empty() && said.insert(text).second) warn(text);
+}
+
+std::string user_cache_folder() {
+    namespace fs = std::filesystem;
+    const auto from = [](const char* variable) -> fs::path {
+        const char* value = std::getenv(variable);
+        return value ? fs::path(value) : fs::path();
+    };
+    // By the XDG Base Directory Specification, a relative path is ignored.
+    if (const fs::path folder = from("XDG_CACHE_HOME"); folder.is_absolute())
+        return (folder / "tonewright").string();
+    if (const fs::path home = from("HOME"); home.is_absolute())
+        return (home / ".cache" / "tonewright").string();
+    return "";
 }
 
 std::unique_ptr<CommandLine> make_command_line() {

@@ -69,6 +69,10 @@ void warn_of(const ResolvedOperator& op);
                                                    const Settings& settings = {},
                                                    const std::string& look = {});
 
+/// The folder of the user for numbers that take seconds to compute: `tonewright` in
+/// $XDG_CACHE_HOME, else in ~/.cache. Empty if neither is an absolute path.
+[[nodiscard]] std::string user_cache_folder();
+
 /// Each subcommand has its own file and adds itself to the command line.
 void add_list(CommandLine& program);
 void add_eval(CommandLine& program);

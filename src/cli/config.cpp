@@ -177,6 +177,7 @@ int run_config(Options& options) {
         wanted.custom.push_back(
             {options.names[i], resolve_operator(options.operators[i], {}, {}, operator_files())});
     wanted.others = operator_files();
+    wanted.cache_folder = user_cache_folder();
     redirect_opencolorio_messages([](const std::string& text) {
         if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
     });

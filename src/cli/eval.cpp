@@ -182,7 +182,8 @@ ColorMap map_of_operator(const Options& given) {
     }
     constexpr std::array kBackends = {Backend::Id::simd, Backend::Id::ocio_cpu,
                                       Backend::Id::ocio_gpu};
-    return through_floats(find_backend(kBackends.at(kind - 1)).start({view, pipeline}));
+    return through_floats(
+        find_backend(kBackends.at(kind - 1)).start({view, pipeline, nullptr, user_cache_folder()}));
 }
 
 int run_explain(Options options) {

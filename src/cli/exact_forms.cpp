@@ -89,7 +89,7 @@ class Forms {
             return {0, "clf or ctf, scene-linear: a 1D table",
                     command("bake", options_.op, host.id, ".clf")};
         }
-        if (!chain_) chain_ = make_lut_chain(request, LutNodes::automatic);
+        if (!chain_) chain_ = make_lut_chain(request, LutNodes::automatic, user_cache_folder());
         const std::string name = chain_->fits_clf ? "clf" : "ctf";
         return {chain_->error.photographs.p999, name + ", scene-linear input",
                 command("bake", options_.op, host.id, "." + name)};

@@ -182,6 +182,7 @@ class PageContents {
         request.view = make_view(op, "lin_rec709", 0, kDisplay);
         request.language = ShaderLanguage::glsl_es;
         request.uniforms = live_parameters(*op.op);
+        request.cache_folder = user_cache_folder();
         Json values = Json::object();
         for (const std::string& name : request.uniforms)
             values.add(name, op.params.number(name));
@@ -243,6 +244,7 @@ class PageContents {
         request.uniforms = uniforms;
         request.language = ShaderLanguage::wgsl;
         request.tables = ShaderTables::by_size;
+        request.cache_folder = user_cache_folder();
         const Shader wgsl = write_shader(request);
         request.language = ShaderLanguage::javascript;
         const Shader reference = write_shader(request, &wgsl.errors);
@@ -328,7 +330,7 @@ class PageContents {
         ReferenceEngine(build_view(view)).run_rgb(rgb.data(), truth.data(), rgb.size() / 3);
         std::string bytes;
         backends_.clear();
-        for (const BackendResult& result : run_backends(view, rgb)) {
+        for (const BackendResult& result : run_backends(view, rgb, user_cache_folder())) {
             if (result.shown.empty()) {
                 notes_[result.name] = result.reason;
                 continue;
@@ -351,6 +353,7 @@ class PageContents {
         verify_options.gamut_grid_size = 9;
         verify_options.random_count = 10000;
         verify_options.only_best_target = true;
+        verify_options.cache_folder = user_cache_folder();
         verify_options.shaders = {"glsl-es"};
         for (const ParityRow& row : verify(verify_options).rows)
             rows.push_back(to_json(row));

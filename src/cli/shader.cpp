@@ -124,6 +124,7 @@ void write_one(Options& options) {
     request.is_inverse = options.is_inverse;
     request.tables = tables_of(options);
     request.curves = curves_of(options);
+    request.cache_folder = user_cache_folder();
     if (!options.file.empty()) {
         if (const std::string why = why_no_file(options.file); !why.empty())
             throw FileError(fmt::format("write: {}: {}", options.file, why));

@@ -153,6 +153,7 @@ int run_verify(Options& options) {
         if (!op.op->file.empty()) warn_of(op);
     }
     verify_options.with_gpu = !options.no_gpu;
+    verify_options.cache_folder = user_cache_folder();
     if (options.quick) {
         verify_options.gamut_grid_size = 9;
         verify_options.random_count = 10000;

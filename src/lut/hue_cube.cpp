@@ -757,7 +757,7 @@ class Maker {
         };
         draw_block(0);
         const std::vector<double> nodes = cached_numbers(
-            "hue_cube", key_of(places, codes, std::min(kBlock, count)),
+            options_.cache_folder, "hue_cube", key_of(places, codes, std::min(kBlock, count)),
             numbers_in(cube_number_count(options_.edge)), [&] {
                 in_parallel((count + kBlock - 1) / kBlock, options_.thread_count, draw_block);
                 return fit_nodes(places, codes);

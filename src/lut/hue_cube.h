@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "pipeline/hue_structure.h"
@@ -58,6 +59,8 @@ struct HueCubeOptions {
     double samples_per_node = 8;
     int rounds = 3;
     unsigned thread_count = 0;
+    /// @see cached_numbers
+    std::string cache_folder = {};
 };
 
 /// @param top  limit of every channel: the stage saturates there

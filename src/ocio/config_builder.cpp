@@ -213,9 +213,10 @@ void append(OCIO::GroupTransformRcPtr& group, const Pipeline& stages) {
 
 /// Display reference -> scene reference, for colors of the view transform. Nothing if OpenColorIO's
 /// own inversion of the view transform is as accurate on the CPU, including its 1D and 3D LUTs.
-std::optional<LoweredOps> inverse_space(const ConfigModel::View& view, const DisplayedView& shown) {
+std::optional<LoweredOps> inverse_space(const ConfigModel::View& view, const DisplayedView& shown,
+                                        const std::string& cache_folder) {
     const DisplayLimit limit = display_limit(shown.op, *shown.display);
-    std::optional<LoweredOps> inverted = invert_light(shown.op, limit);
+    std::optional<LoweredOps> inverted = invert_light(shown.op, limit, cache_folder);
     if (!inverted) return std::nullopt;
     LoweredOps ops = lower_to_ocio({MatrixStage{inverse(rgb_to_xyz_d65(limit.primaries))}}).ops;
     append(ops, std::move(*inverted));
@@ -644,14 +645,14 @@ ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& vi
                                                      const DisplayedView& shown,
                                                      bool is_first) const {
     LoweredView result;
-    const LowerOptions options = lower_options(*view.op.op);
+    const LowerOptions options = lower_options(*view.op.op, model_.cache_folder);
     const View measured = make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
     const Pipeline stages = build_view(measured);
     const std::vector<double> truth = true_codes(stages, samples_);
     ViewError& error = result.error;
     error = measure_view(measured, lower_to_ocio(stages, options), samples_, truth);
     result.forward = lower_to_ocio(shown.stages, options);
-    result.back = inverse_space(view, shown);
+    result.back = inverse_space(view, shown, model_.cache_folder);
     // OpenColorIO takes seconds to invert a 3D LUT: measure it once per view, with few colors.
     const bool is_slow = !result.back && !result.forward.is_exact;
     if (!view.op.op->is_diagnostic && (is_first || !is_slow)) {

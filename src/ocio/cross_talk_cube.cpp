@@ -141,13 +141,14 @@ std::shared_ptr<const CrossTalkCube> cross_talk_cube(const CrossTalkStage& stage
             const auto is_usable = [&](const std::vector<double>& numbers) {
                 return are_nodes(numbers) && numbers.back() >= 0 && numbers.back() < 1;
             };
-            nodes = cached_numbers("cube", key_of(problem, top), is_usable, [&] {
-                const double share = choose_share_of_lights(problem, top);
-                problem.axis = make_log_axis(top, problem.edge, share);
-                std::vector<double> numbers = fit_cube(problem);
-                numbers.push_back(share);
-                return numbers;
-            });
+            nodes =
+                cached_numbers(options.cache_folder, "cube", key_of(problem, top), is_usable, [&] {
+                    const double share = choose_share_of_lights(problem, top);
+                    problem.axis = make_log_axis(top, problem.edge, share);
+                    std::vector<double> numbers = fit_cube(problem);
+                    numbers.push_back(share);
+                    return numbers;
+                });
             problem.axis = make_log_axis(top, problem.edge, nodes.back());
             nodes.pop_back();
         } else {
@@ -162,7 +163,8 @@ std::shared_ptr<const CrossTalkCube> cross_talk_cube(const CrossTalkStage& stage
 }
 
 std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage, const HueStructure& structure,
-                                        double top, const Primaries& primaries) {
+                                        double top, const Primaries& primaries,
+                                        const std::string& cache_folder) {
     struct HueKey {
         std::array<Expr, 3> f;  // equal expressions are the same node, as long as one lives
         double top;
@@ -178,7 +180,8 @@ std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage, const HueSt
     // % of Rec.709 colors, 81 leave 3.1e-3. The bound for all displays is 4e-3.
     const int edge = structure.peak > 1 ? 81 : 65;
     return cache.get({stage.f, top, primaries}, [&] {
-        return fit_hue_cube(structure, top, {.edge = edge, .primaries = primaries});
+        return fit_hue_cube(structure, top,
+                            {.edge = edge, .primaries = primaries, .cache_folder = cache_folder});
     });
 }
 

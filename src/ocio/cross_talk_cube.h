@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "lut/hue_cube.h"
@@ -23,6 +24,8 @@ struct CrossTalkCubeOptions {
     /// Fits the nodes for the least error between them, which takes seconds; otherwise samples
     /// them.
     bool is_fitted = false;
+    /// @see cached_numbers
+    std::string cache_folder = {};
 };
 
 /// End of the axes: the value at which the stage saturates, and at most `largest`.
@@ -41,6 +44,7 @@ struct CrossTalkCubeOptions {
 /// @param primaries  of the working space
 [[nodiscard]] std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage,
                                                       const HueStructure& structure, double top,
-                                                      const Primaries& primaries);
+                                                      const Primaries& primaries,
+                                                      const std::string& cache_folder);
 
 TONEWRIGHT_NAMESPACE_END

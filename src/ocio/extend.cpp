@@ -604,6 +604,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
         if (!is_empty(given)) return extend(location, rest, given, {}, earlier);
         ConfigOptions options = earlier.record.options;
         options.others = given.others;
+        options.cache_folder = given.cache_folder;
         try {
             for (const AddedRecord::CustomView& view : earlier.record.custom)
                 options.custom.push_back(

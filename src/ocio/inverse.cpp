@@ -180,7 +180,8 @@ std::optional<LoweredOps> invert_builtin(const ResolvedOperator& op, const Displ
 
 }  // namespace
 
-std::optional<LoweredOps> invert_light(const ResolvedOperator& op, const DisplayLimit& limit) {
+std::optional<LoweredOps> invert_light(const ResolvedOperator& op, const DisplayLimit& limit,
+                                       const std::string& cache_folder) {
     if (auto ops = invert_builtin(op, limit)) return ops;
     Pipeline forward = op.build();
     const Pipeline light = display_light_stages(op, limit);
@@ -201,7 +202,7 @@ std::optional<LoweredOps> invert_light(const ResolvedOperator& op, const Display
     }
     Pipeline own = op.build();
     append_stages(own, display_light_stages(op, {primaries, limit.peak}));
-    append_stages(back, fitted_inverse(own, op.op->working, limit.peak));
+    append_stages(back, fitted_inverse(own, op.op->working, limit.peak, cache_folder));
     return lower_to_ocio(back).ops;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "ocio/lowered_op.h"
 #include "tonewright/view.h"
@@ -20,9 +21,11 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// - every transform of the view inverted by OpenColorIO. If only infinite values are white, the
 ///   input is limited to the last half float below white.
 ///
+/// @param cache_folder  @see cached_numbers
 /// @return nothing for a diagnostic view, which shows many colors as one, and if OpenColorIO
 ///         inverts the view without help.
 [[nodiscard]] std::optional<LoweredOps> invert_light(const ResolvedOperator& op,
-                                                     const DisplayLimit& limit);
+                                                     const DisplayLimit& limit,
+                                                     const std::string& cache_folder = {});
 
 TONEWRIGHT_NAMESPACE_END

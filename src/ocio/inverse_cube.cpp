@@ -86,7 +86,8 @@ Pipeline sampled_inverse(const Pipeline& back, double peak) {
         curve_stage(light_of(Expr::input()))};
 }
 
-Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, double peak) {
+Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, double peak,
+                        const std::string& cache_folder) {
     // Displays with the same gamut and peak share it.
     struct Key {
         std::array<Expr, 3> forward;  // equal expressions are the same node, as long as one lives
@@ -117,9 +118,9 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
                 fmt::format("inverse cube {}, {} nodes a side: {}, {}, {}, {}", kFitVersion,
                             problem.edge, key_of_numbers({peak}), key_of_primaries(primaries),
                             key_of_pipeline(problem.before), key_of_pipeline(problem.forward));
-            std::vector<double> nodes =
-                cached_numbers("inverse_cube", key, numbers_in(cube_number_count(problem.edge)),
-                               [&] { return fit_inverse_cube(problem); });
+            std::vector<double> nodes = cached_numbers(cache_folder, "inverse_cube", key,
+                                                       numbers_in(cube_number_count(problem.edge)),
+                                                       [&] { return fit_inverse_cube(problem); });
             // No picture reaches values above the brightest one.
             for (double& code : nodes)
                 code = std::clamp(code, -1.0, 1.0);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -14,9 +16,10 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] Pipeline sampled_inverse(const Pipeline& back, double peak);
 
 /// Fitted for the round trip. Deterministic for a chain.
-/// @param forward    scene-linear -> display-linear in [0, peak]
-/// @param primaries  of the scene: the inverse does not reach colors outside them.
+/// @param forward       scene-linear -> display-linear in [0, peak]
+/// @param primaries     of the scene: the inverse does not reach colors outside them.
+/// @param cache_folder  @see cached_numbers
 [[nodiscard]] Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries,
-                                      double peak);
+                                      double peak, const std::string& cache_folder);
 
 TONEWRIGHT_NAMESPACE_END

@@ -223,9 +223,11 @@ class Lowering {
     void emit_cube(const CrossTalkStage& stage, const ClampStage& behind, bool is_fitted) {
         result_.loses_negatives = result_.loses_negatives || !(domain_.lo >= 0);
         const double top = cross_talk_top(stage, behind, domain_.hi, is_fitted);
-        const auto cube = cross_talk_cube(
-            stage, behind, top,
-            {.edge = options_.cube_edge, .primaries = options_.primaries, .is_fitted = is_fitted});
+        const auto cube = cross_talk_cube(stage, behind, top,
+                                          {.edge = options_.cube_edge,
+                                           .primaries = options_.primaries,
+                                           .is_fitted = is_fitted,
+                                           .cache_folder = options_.cache_folder});
         emit(RangeOp{0, top}, "range");
         const std::vector<float> shaper = sample_half_domain(cube->shaper, 0, top);
         const std::vector<signed char> slack = unused_entries(shaper, 0, top);
@@ -242,7 +244,8 @@ class Lowering {
     void emit_hue_cube(const CrossTalkStage& stage, const HueStructure& structure) {
         result_.loses_negatives = result_.loses_negatives || !(domain_.lo >= 0);
         const double top = cross_talk_top(stage, behind_, domain_.hi, true);
-        const auto cube = hue_cube(stage, structure, top, options_.primaries);
+        const auto cube =
+            hue_cube(stage, structure, top, options_.primaries, options_.cache_folder);
         emit(RangeOp{0, top}, "range");
         domain_ = {0, top};
         for (const Stage& part : structure.to_axes)

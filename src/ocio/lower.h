@@ -27,6 +27,8 @@ struct LowerOptions {
     /// Fits the nodes of these LUTs for the least error between them, which takes seconds;
     /// otherwise samples them.
     bool fits_cubes = false;
+    /// Folder that keeps fitted nodes. @see cached_numbers
+    std::string cache_folder = {};
 };
 
 /// Lowers stage by stage, by the kind of the stage:

@@ -41,8 +41,8 @@ void check(const LutRequest& request, LutNodes nodes) {
                      .expected = "auto, sampled or fitted for scene-linear input"});
 }
 
-Lowered lower(const LutRequest& request, LutNodes nodes) {
-    LowerOptions options = lower_options(*request.view.op.op);
+Lowered lower(const LutRequest& request, LutNodes nodes, const std::string& cache_folder) {
+    LowerOptions options = lower_options(*request.view.op.op, cache_folder);
     if (nodes != LutNodes::automatic) options.fits_cubes = nodes == LutNodes::fitted;
     options.cube_edge = request.size.value_or(options.cube_edge);
     return lower_to_ocio(build_view(request.view), options);
@@ -154,9 +154,10 @@ bool is_lut_chain(const LutRequest& request) {
            (request.dimension == LutDimension::three || !is_per_channel(build_view(request.view)));
 }
 
-LutChain make_lut_chain(const LutRequest& request, LutNodes nodes) {
+LutChain make_lut_chain(const LutRequest& request, LutNodes nodes,
+                        const std::string& cache_folder) {
     check(request, nodes);
-    const Lowered lowered = lower(request, nodes);
+    const Lowered lowered = lower(request, nodes, cache_folder);
     const bool is_for_both = fits_clf(lowered.ops);
     if (request.format == LutFormat::clf && !is_for_both) {
         throw Error({.parameter = "format",

@@ -530,6 +530,7 @@ std::string output_space_name(const std::string& view, const std::string& displa
 
 ConfigModel make_config_model(const ConfigOptions& options) {
     ConfigModel model;
+    model.cache_folder = options.cache_folder;
     model.name = kConfigName;
     model.description =
         "Tone mapping operators as OpenColorIO views, each measured against a double-precision "

@@ -81,6 +81,7 @@ struct ConfigModel {
     std::vector<std::pair<std::string, std::string>> roles;
     std::vector<FileRule> file_rules;
     std::string default_space;
+    std::string cache_folder;  // @see ConfigOptions
 };
 
 /// View transform of a view on a display.

@@ -72,10 +72,11 @@ const std::vector<std::string_view>& fitted_operators() {
     return ids;
 }
 
-LowerOptions lower_options(const Operator& op) {
+LowerOptions lower_options(const Operator& op, const std::string& cache_folder) {
     const auto& fitted = fitted_operators();
     return {.primaries = op.working,
-            .fits_cubes = std::find(fitted.begin(), fitted.end(), op.id) != fitted.end()};
+            .fits_cubes = std::find(fitted.begin(), fitted.end(), op.id) != fitted.end(),
+            .cache_folder = cache_folder};
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -32,6 +32,8 @@ inline constexpr const char* kBuiltinPrefix = "ACES-OUTPUT - ACES2065-1_to_CIE-X
 [[nodiscard]] TONEWRIGHT_API const std::vector<std::string_view>& fitted_operators();
 
 /// Options for lowering the operator's views.
-[[nodiscard]] TONEWRIGHT_API LowerOptions lower_options(const Operator& op);
+/// @param cache_folder  @see LowerOptions
+[[nodiscard]] TONEWRIGHT_API LowerOptions lower_options(const Operator& op,
+                                                        const std::string& cache_folder = {});
 
 TONEWRIGHT_NAMESPACE_END

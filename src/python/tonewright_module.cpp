@@ -449,7 +449,8 @@ py::dict describe(const ParityRow& row) {
 py::dict bake_file(const std::string& op, const std::string& file, const std::string& host,
                    const std::optional<std::string>& format,
                    const std::optional<std::string>& input_encoding, std::optional<int> size,
-                   std::optional<int> depth, const py::kwargs& arguments) {
+                   std::optional<int> depth, const std::string& cache,
+                   const py::kwargs& arguments) {
     TonemapOptions options = parse_color_options(op, arguments);
     const LutApplication* reader = host.empty() ? nullptr : &find_lut_application(host);
     LutRequest request;
@@ -487,7 +488,7 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     with_memory_for(file, [&] {
         const py::gil_scoped_release release;
         if (is_lut_chain(request)) {
-            const LutChain chain = make_lut_chain(request, LutNodes::automatic);
+            const LutChain chain = make_lut_chain(request, LutNodes::automatic, cache);
             write_text_atomically(file, chain.contents);
             error = chain.error;
             operations = chain.operations;
@@ -673,8 +674,9 @@ void write_config(const std::string& folder, const std::vector<std::string>& pro
                   const std::vector<std::string>& views, const std::vector<std::string>& displays,
                   const std::vector<std::string>& looks, const std::string& working,
                   const std::vector<std::pair<std::string, std::string>>& custom,
-                  const std::vector<double>& exposure_stops) {
+                  const std::vector<double>& exposure_stops, const std::string& cache) {
     ConfigOptions options;
+    options.cache_folder = cache;
     options.others = operator_files();
     options.profiles = profiles;
     options.views = views;
@@ -696,8 +698,9 @@ void write_config(const std::string& folder, const std::vector<std::string>& pro
 py::list verify_operators(const std::vector<std::string>& operators,
                           const std::vector<std::string>& displays, const std::string& input,
                           const std::string& config, bool is_quick, bool with_gpu,
-                          const std::vector<std::string>& shaders) {
+                          const std::vector<std::string>& shaders, const std::string& cache) {
     VerifyOptions options;
+    options.cache_folder = cache;
     options.operators = resolve_operators(operators, operator_files());
     options.displays = displays;
     options.input = input;
@@ -749,7 +752,8 @@ PYBIND11_MODULE(_tonewright, m) {
     m.def("displays", [] { return tw::describe_all(tw::all_displays()); });
     m.def("applications", [] { return tw::describe_all(tw::all_lut_applications()); });
     m.def("bake", &tw::bake_file, py::arg("op"), py::arg("file"), py::kw_only(), py::arg("host"),
-          py::arg("format"), py::arg("input_encoding"), py::arg("size"), py::arg("depth"));
+          py::arg("format"), py::arg("input_encoding"), py::arg("size"), py::arg("depth"),
+          py::arg("cache"));
     m.def("make_config", &tw::write_config);
     m.def("verify", &tw::verify_operators);
 }

@@ -6,7 +6,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-std::vector<BackendResult> run_backends(const View& view, const std::vector<float>& rgb) {
+std::vector<BackendResult> run_backends(const View& view, const std::vector<float>& rgb,
+                                        const std::string& cache_folder) {
     const Pipeline pipeline = build_view(view);
     std::vector<BackendResult> results;
     for (const Backend& backend : all_backends()) {
@@ -14,7 +15,7 @@ std::vector<BackendResult> run_backends(const View& view, const std::vector<floa
         BackendResult& result = results.emplace_back();
         result.name = backend.title;
         try {
-            const ColorRun run = backend.start({view, pipeline});
+            const ColorRun run = backend.start({view, pipeline, nullptr, cache_folder});
             result.shown.resize(rgb.size());
             run(rgb.data(), result.shown.data(), rgb.size() / 3);
         } catch (const Error& e) {

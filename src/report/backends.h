@@ -17,8 +17,10 @@ struct BackendResult {
 };
 
 /// The engine, OpenColorIO's CPU and GPU paths, and a LUT as applications interpolate it.
-/// @param rgb  interleaved, scene-linear in the view's input space
+/// @param rgb           interleaved, scene-linear in the view's input space
+/// @param cache_folder  @see LowerOptions
 [[nodiscard]] std::vector<BackendResult> run_backends(const View& view,
-                                                      const std::vector<float>& rgb);
+                                                      const std::vector<float>& rgb,
+                                                      const std::string& cache_folder);
 
 TONEWRIGHT_NAMESPACE_END

@@ -315,7 +315,7 @@ std::string output_text(const ShaderRequest& request) {
     return "code values for " + display.title + " (" + display.source + ")";
 }
 
-/// Result of measure_shader(), from the cache folder if present.
+/// Result of measure_shader(), from the request's cache folder if present.
 ShaderErrors known_errors(const ShaderRequest& request, const ShaderProgram& program,
                           const std::string& definition) {
     // Change it if the measurement of errors or the float formulas change.
@@ -339,12 +339,13 @@ ShaderErrors known_errors(const ShaderRequest& request, const ShaderProgram& pro
     const auto is_usable = [&](const std::vector<double>& numbers) {
         return are_errors(numbers) && numbers[3] <= static_cast<double>(functions.size());
     };
-    const std::vector<double> numbers = cached_numbers("shader_errors", key, is_usable, [&] {
-        const ShaderErrors errors = measure_shader(request);
-        const auto place = std::find(functions.begin(), functions.end(), errors.arises_in);
-        return std::vector<double>{errors.in_float, errors.guaranteed, errors.vulkan_estimate,
-                                   static_cast<double>(place - functions.begin())};
-    });
+    const std::vector<double> numbers =
+        cached_numbers(request.cache_folder, "shader_errors", key, is_usable, [&] {
+            const ShaderErrors errors = measure_shader(request);
+            const auto place = std::find(functions.begin(), functions.end(), errors.arises_in);
+            return std::vector<double>{errors.in_float, errors.guaranteed, errors.vulkan_estimate,
+                                       static_cast<double>(place - functions.begin())};
+        });
     const auto place = static_cast<std::size_t>(numbers[3]);
     return {numbers[0], numbers[1], place < functions.size() ? functions[place] : "", numbers[2]};
 }

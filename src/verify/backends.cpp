@@ -55,7 +55,8 @@ ColorRun start_simd(const BackendInput& input) {
 
 OCIO::ConstProcessorRcPtr processor_of(const BackendInput& input) {
     if (input.processor) return input.processor;
-    const LowerOptions lowering{.fits_cubes = lower_options(*input.view.op.op).fits_cubes};
+    const LowerOptions lowering{.fits_cubes = lower_options(*input.view.op.op).fits_cubes,
+                                .cache_folder = input.cache_folder};
     return make_processor(lower_to_ocio(input.pipeline, lowering).ops);
 }
 

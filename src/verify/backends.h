@@ -24,6 +24,8 @@ struct BackendInput {
     const Pipeline& pipeline;
     /// OpenColorIO's backends run it; null: they lower the pipeline.
     OCIO::ConstProcessorRcPtr processor = nullptr;
+    /// @see LowerOptions
+    std::string cache_folder = {};
 };
 
 /// Limit of the error of a backend, in code values of the display.

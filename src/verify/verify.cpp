@@ -34,10 +34,12 @@ namespace fs = std::filesystem;
 /// A config in a temporary folder, which the destructor removes.
 class TemporaryConfig {
   public:
-    explicit TemporaryConfig(std::vector<ConfigOptions::CustomView> views) {
-        write_generated_files(folder_.path(),
-                              make_config({.views = {"none"}, .custom = std::move(views)}),
-                              "config.ocio");
+    TemporaryConfig(std::vector<ConfigOptions::CustomView> views, const std::string& cache_folder) {
+        write_generated_files(
+            folder_.path(),
+            make_config(
+                {.views = {"none"}, .custom = std::move(views), .cache_folder = cache_folder}),
+            "config.ocio");
     }
     [[nodiscard]] const std::string& folder() const { return folder_.path(); }
 
@@ -396,7 +398,7 @@ class Verification {
         shown_.resize(samples_.rgb.size());
         std::optional<TemporaryConfig> fresh;
         if (!config_) {
-            fresh.emplace(views_of_operators(views));
+            fresh.emplace(views_of_operators(views), options_.cache_folder);
             config_ = read_config(path_of_config(fresh->folder()));
         }
         for (const View& view : views)
@@ -407,13 +409,14 @@ class Verification {
   private:
     struct Subject {
         const View& view;
+        const std::string& cache_folder;
         Pipeline pipeline = build_view(view);
-        Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op));
+        Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op, cache_folder));
         BackendBounds bounds = backend_bounds(view, pipeline, lowered);
     };
 
     void add_view(const View& view) {
-        const Subject subject{view};
+        const Subject subject{view, options_.cache_folder};
         const Comparison comparison(view, samples_);
         if (!is_of_config_) add_engines(subject, comparison);  // our engine does not read it
         const auto [processor, lowering] = processor_of(subject);

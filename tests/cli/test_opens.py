@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How often commands open their files, by strace: the file of an operator, a LUT and a config once, a picture at most
-twice. And a shot whose operator's file disappears while its frames are tone mapped.
+twice. The numbers that it keeps. And a shot whose operator's file disappears while its frames are tone mapped.
 
     python3 tests/cli/test_opens.py build/release/bin/tonewright
 
@@ -86,6 +86,26 @@ def check_pictures(c):
         c.check(text, {"scene.hdr": 2 * once})
 
 
+def check_cache(c):
+    """The second run reads the numbers of the first. A relative XDG_CACHE_HOME is ignored."""
+    def kept_by(**variables):
+        environment = {name: value for name, value in os.environ.items() if name not in ("HOME", "XDG_CACHE_HOME")}
+        subprocess.run([c.command, "shader", "hable", "--language", "glsl", "-o", "out.glsl", "-q"], cwd=c.folder, check=True,
+                       env={**environment, **variables})
+        return {str(path.relative_to(c.folder)): (path.stat().st_ino, path.stat().st_mtime_ns)
+                for path in c.folder.rglob("*.numbers")}
+
+    c.report.check("cache: without a home, nothing is kept", not kept_by() and not kept_by(XDG_CACHE_HOME="relative"))
+    for folder, variables in (("home/.cache", {"HOME": str(c.folder / "home"), "XDG_CACHE_HOME": "relative"}),
+                              ("cache", {"HOME": str(c.folder / "home"), "XDG_CACHE_HOME": str(c.folder / "cache")})):
+        before = kept_by()
+        first, second = kept_by(**variables), kept_by(**variables)
+        new = first.keys() - before
+        c.report.check(f"cache: one new file in {folder}", len(new) == 1 and next(iter(new)).startswith(folder + "/tonewright/"),
+                       first)
+        c.report.check(f"cache: the second run uses that of {folder}", second == first, f"{first} {second}")
+
+
 def check_shots(c):
     """Every frame is that of the file at the start, also after it was replaced, half saved or deleted."""
     count = 30
@@ -134,7 +154,7 @@ def main():
         for number in range(1, 7):
             (folder / f"frame.{number:04d}.hdr").hardlink_to(folder / "scene.hdr")
         c = Opens(report, command, folder)
-        for check in (check_operators, check_configs, check_pictures, check_shots):
+        for check in (check_operators, check_configs, check_pictures, check_cache, check_shots):
             check(c)
     return report.finish()
 

@@ -85,18 +85,18 @@ void read_meter_cache(const std::string& text) {
 /// A damaged file gives no other numbers than those that it had.
 void read_number_cache(const std::string& text) {
     static const PrivateFolder folder;
-    static const bool is_set = ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1) == 0;
-    if (!is_set) std::abort();
     const std::string key = text.substr(0, std::min<std::size_t>(text.find('\n'), 40));
+    const std::string cache = folder.path() + "/tonewright";
     (void)folder.write("tonewright/x_" + content_hash(key) + ".numbers", text);
     const std::vector<double> made = {0.5, 2};
     const NumberCheck is_usable = numbers_in(2, 0, 2);
-    (void)cached_numbers("x", key, is_usable, [&] { return made; });
-    const std::vector<double> numbers = cached_numbers("x", key, is_usable, [&] { return made; });
-    if (!is_usable(numbers) ||
-        numbers != cached_numbers("x", key, is_usable, [] { return std::vector<double>{3}; }))
+    (void)cached_numbers(cache, "x", key, is_usable, [&] { return made; });
+    const std::vector<double> numbers =
+        cached_numbers(cache, "x", key, is_usable, [&] { return made; });
+    if (!is_usable(numbers) || numbers != cached_numbers(cache, "x", key, is_usable,
+                                                         [] { return std::vector<double>{3}; }))
         std::abort();
-    std::filesystem::remove_all(folder.path() + "/tonewright");
+    std::filesystem::remove_all(cache);
 }
 
 void set_arguments(const Request& request) {

@@ -37,6 +37,8 @@ struct ConfigOptions {
     std::vector<double> exposure_stops = {};
     /// Operators that `views` may name, and the reader of LUTs.
     OperatorSet others = {};
+    /// Folder that keeps fitted 3D LUTs, at most 256 MiB; empty: nothing is stored.
+    std::string cache_folder = {};
 };
 
 struct ConfigModel;

@@ -83,6 +83,8 @@ struct ShaderRequest {
     /// Not null: writes the whole file for the application, in its language instead of `language`.
     /// Uniforms become the application's own sliders or inputs.
     const ShaderApplication* application = nullptr;
+    /// Folder that keeps measured errors; empty: nothing is stored.
+    std::string cache_folder = {};
 };
 
 /// A table of a shader outside its text: a 3D texture of four 32-bit floats, x running fastest. For

@@ -33,6 +33,8 @@ struct VerifyOptions {
     bool only_best_target = false;
     /// Scene-linear RGB pixels to add to the sample set, in the input space.
     std::vector<float> picture;
+    /// Folder that keeps fitted 3D LUTs, at most 256 MiB; empty: nothing is stored.
+    std::string cache_folder;
 };
 
 /// Errors of one backend of one view against the double reference, in display code values.

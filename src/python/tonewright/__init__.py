@@ -62,6 +62,10 @@ def _path(name: str, value: Any) -> str:
     return _text(name, _os.fsdecode(value))
 
 
+def _cache(value: Any) -> str:
+    return "" if value is None else _path("cache", value)
+
+
 def _texts(name: str, values: Any) -> list[str]:
     if isinstance(values, str):
         raise TypeError(f"{name} must be a sequence of str, not str")
@@ -226,12 +230,14 @@ def applications() -> list[dict[str, Any]]:
 
 def bake(op: str, file: Path, *, host: str = "", format: str | None = None, input_encoding: str | None = None,
          size: int | None = None, depth: int | None = None, settings: Mapping[str, Any] | None = None, exposure: float = 0,
-         input: str = "auto", display: str | None = None, look: str = "", reference_white: float = 100) -> dict[str, Any]:
+         input: str = "auto", display: str | None = None, look: str = "", reference_white: float = 100,
+         cache: Path | None = None) -> dict[str, Any]:
     """Write an operator as a LUT file and return its size and measured error.
 
     file: replaced only when the new file is complete.
     host: id of the application that reads it, see applications(); sets format, size, input and display.
     format, input_encoding, size, depth: as the options of `tonewright bake`.
+    cache: as make_config(), for a clf or ctf of scene-linear input.
 
     The result has dimension and size, or operations (of a clf or ctf of scene-linear input), interpolation, max_error and
     mean_error (of every color of the input, code values), and photographs: p999 and mean (99.9 % and mean of the pixels of photographs, code values), above_one_code (share of the
@@ -246,12 +252,13 @@ def bake(op: str, file: Path, *, host: str = "", format: str | None = None, inpu
                             format=None if format is None else _text("format", format),
                             input_encoding=None if input_encoding is None else _text("input_encoding", input_encoding),
                             size=None if size is None else _operator.index(size),
-                            depth=None if depth is None else _operator.index(depth), **options)
+                            depth=None if depth is None else _operator.index(depth), cache=_cache(cache), **options)
 
 
 def make_config(folder: Path, *, views: Iterable[str] = (), displays: Iterable[str] = (), looks: Iterable[str] = (),
                 working: str = "lin_rec709", profiles: Iterable[str] = ("2.1", "2.0", "2.5"),
-                custom: Mapping[str, str] | None = None, exposure_views: Iterable[float] = ()) -> None:
+                custom: Mapping[str, str] | None = None, exposure_views: Iterable[float] = (),
+                cache: Path | None = None) -> None:
     """Write an OpenColorIO config of the operators into a folder. It takes up to two minutes.
 
     views: names of views or operators, in order; empty: a dozen; ["all"]: all.
@@ -260,18 +267,19 @@ def make_config(folder: Path, *, views: Iterable[str] = (), displays: Iterable[s
     profiles: versions of OpenColorIO; the first becomes config.ocio.
     custom: names of views -> operators with their settings, such as {"Studio": "reinhard_extended:white=6"}.
     exposure_views: stops; every view is added again with each of them.
+    cache: folder that keeps fitted 3D LUTs for the next call, at most 256 MiB (default: none).
 
     Example: tonewright.make_config("ocio_config", views=["AgX", "hable"], profiles=["2.1"])
     """
     _tonewright.make_config(_path("folder", folder), _texts("profiles", profiles), _texts("views", views),
                             _texts("displays", displays), _texts("looks", looks), _text("working", working),
                             [(_text("custom", name), _text("custom", op)) for name, op in (custom or {}).items()],
-                            [_number("exposure_views", stops) for stops in exposure_views])
+                            [_number("exposure_views", stops) for stops in exposure_views], _cache(cache))
 
 
 def verify(operators: Iterable[str] = (), *, displays: Iterable[str] = (), input: str = "lin_rec709",
            config: Path | None = None, quick: bool = False, gpu: bool = True,
-           shaders: Iterable[str] = ()) -> list[dict[str, Any]]:
+           shaders: Iterable[str] = (), cache: Path | None = None) -> list[dict[str, Any]]:
     """Compare every backend with the double-precision reference and return the errors, one dict for each comparison.
 
     operators: empty: all, or those of the config.
@@ -280,9 +288,10 @@ def verify(operators: Iterable[str] = (), *, displays: Iterable[str] = (), input
     quick: use smaller sample sets.
     gpu: run OpenColorIO's GPU path and shaders.
     shaders: languages to run shaders of, or "none"; empty: all that this machine can run.
+    cache: as make_config().
 
     Example: all(row["ok"] for row in tonewright.verify(["hable"], quick=True))
     """
     return _tonewright.verify(_texts("operators", operators), _texts("displays", displays), _text("input", input),
                               "" if config is None else _path("config", config), bool(quick), bool(gpu),
-                              _texts("shaders", shaders))
+                              _texts("shaders", shaders), _cache(cache))

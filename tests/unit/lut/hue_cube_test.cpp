@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 
 #include "base/random.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
+#include "unit/folder.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -76,24 +75,14 @@ TEST(HueCube, KeepsBlackGraysAndHues) {
                                     .rounds = 1,
                                     .thread_count = 1};
     // Nothing is kept, then the nodes are, then they are read.
-    const char* known = std::getenv("XDG_CACHE_HOME");
-    const std::string before = known ? known : "";
-    setenv("XDG_CACHE_HOME", "/dev/null/nowhere", 1);
     const HueCube cube = fit_hue_cube(*structure, 128, options);
     HueCubeOptions threads = options;
     threads.thread_count = 3;
-    const std::filesystem::path folder =
-        std::filesystem::path(testing::TempDir()) / "tonewright_hue_cube_test";
-    setenv("XDG_CACHE_HOME", folder.c_str(), 1);
+    const Folder folder;
+    threads.cache_folder = folder.path();
     EXPECT_EQ(fit_hue_cube(*structure, 128, threads).nodes, cube.nodes);
-    EXPECT_TRUE(std::filesystem::exists(folder / "tonewright"));
+    EXPECT_EQ(folder.files().size(), 1U);
     EXPECT_EQ(fit_hue_cube(*structure, 128, threads).nodes, cube.nodes);
-    std::filesystem::remove_all(folder);
-    if (known) {
-        setenv("XDG_CACHE_HOME", before.c_str(), 1);
-    } else {
-        unsetenv("XDG_CACHE_HOME");
-    }
     const std::size_t n = 25;
     ASSERT_EQ(cube.nodes.size(), 3 * n * n * n);
     for (std::size_t i = 0; i < n * n; ++i)

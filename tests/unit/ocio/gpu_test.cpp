@@ -199,9 +199,10 @@ TEST(ShaderGpu, HostileColorsGiveFiniteNumbers) {
         GTEST_SKIP() << reason;
     const std::vector<float> rgb = hostile_colors(count_of(1'000'000U, 20'000U));
     std::vector<float> out(rgb.size());
+    const ShaderErrors unmeasured;
     for (const OperatorVariant& variant : tested_variants()) {
         for (const char* display : {"linear", "srgb"}) {
-            const GlslGpu gpu = gpu_of(write_shader(request_of(variant, display)));
+            const GlslGpu gpu = gpu_of(write_shader(request_of(variant, display), &unmeasured));
             gpu.run_rgb(rgb.data(), out.data(), rgb.size() / 3);
             const auto bad =
                 std::find_if(out.begin(), out.end(), [](float x) { return !std::isfinite(x); });

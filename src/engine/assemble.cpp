@@ -15,13 +15,14 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
-/// Bytes of registers that a tile may take: what stays in a first-level cache of 32 KiB beside the
-/// constants and the pixels on their way in and out.
+/// Limit of a tile's registers in bytes. They stay in a first-level cache of 32 KiB beside the
+/// constants and the pixels that are read and written.
 constexpr std::size_t kCacheBytes = 24UL * 1024;
-/// Doubles that still can be added.
+/// Limit of positions and slopes in double. Sums of them stay finite.
 constexpr double kMostWide = 1e300;
 
-/// Every value that an instruction defines, inputs first, with registers of two kinds.
+/// Assembles a program. A slot stands for a value that an instruction defines; inputs come first.
+/// Floats and doubles have separate registers.
 class Assembler {
   public:
     Assembler(const FloatTape& tape, const std::vector<bool>& in_double,
@@ -35,7 +36,7 @@ class Assembler {
             const std::size_t slot = define(s.value, in_double[s.value]);
             steps_[slot] = s;
         }
-        // Outputs leave as float.
+        // Outputs are floats. An instruction copies an output that is kept in double.
         for (std::size_t c = 0; c < 3; ++c) {
             const std::uint32_t value = tape.outputs()[c];
             outputs_[c] = value;
@@ -51,33 +52,34 @@ class Assembler {
         }
     }
 
-    Code assemble(const Target& target) {
+    Program assemble(const Target& target) {
         allocate();
-        Code code;
-        code.target = &target;
-        code.tile = tile_;
+        Program program;
+        program.target = &target;
+        program.tile = tile_;
         for (std::size_t slot = 0; slot < steps_.size(); ++slot) {
             const Selected& s = steps_[slot];
             const TapeInstruction& origin = tape_[s.value];
             if (origin.op == ExprOp::input) {
                 const auto channel = static_cast<std::size_t>(origin.input);
-                code.reads_input[channel] = true;
-                code.limits_input = origin.is_limited;
-                code.input_offset[channel] = place(slot).offset;
+                program.reads_input[channel] = true;
+                program.limits_input = origin.is_limited;
+                program.input_offset[channel] = place(slot).offset;
                 continue;
             }
             if (s.sibling > 0) {
-                add_result(code.instructions.back(), slot);
+                add_result(program.instructions.back(), slot);
                 continue;
             }
             Instruction step;
             step.op = s.op;
-            step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2;
+            step.wide = s.wide || s.op == ProgramOp::sine || s.op == ProgramOp::cosine ||
+                        s.op == ProgramOp::atan2;
             step.is_positive = s.is_positive;
-            if (s.op == Op::lookup) step.table = table(*s.table);
-            if (s.op == Op::curve) step.table = curve(*s.curve);
-            if (s.op == Op::grid) step.table = grid(*s.grid, step.wide);
-            if (s.op == Op::lookup_nonuniform) {
+            if (s.op == ProgramOp::lookup) step.table = table(*s.table);
+            if (s.op == ProgramOp::curve) step.table = curve(*s.curve);
+            if (s.op == ProgramOp::grid) step.table = grid(*s.grid, step.wide);
+            if (s.op == ProgramOp::lookup_nonuniform) {
                 step.table = static_cast<std::uint32_t>(positioned_.size());
                 positioned_.push_back(at_positions(slot, step.wide));
             }
@@ -86,26 +88,26 @@ class Assembler {
                 if (s.operands[k] == kNone) continue;
                 step.in[k] = operand(static_cast<std::uint32_t>(s.operands[k]), step.wide);
             }
-            code.instructions.push_back(step);
+            program.instructions.push_back(step);
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            code.output[c] = is_number(tape_[outputs_[c]].op) ? number(outputs_[c], false)
-                                                              : place(output_slot_[c]);
+            program.output[c] = is_number(tape_[outputs_[c]].op) ? number(outputs_[c], false)
+                                                                 : place(output_slot_[c]);
         }
-        code.numbers.constants = std::move(constants_);
-        code.uniforms = std::move(uniforms_);
-        code.tables = std::move(tables_);
-        code.positioned = std::move(positioned_);
-        code.grids = std::move(grids_);
-        code.curves = std::move(curves_);
-        code.is_one_function = is_one_function();
-        return code;
+        program.numbers.constants = std::move(constants_);
+        program.uniforms = std::move(uniforms_);
+        program.tables = std::move(tables_);
+        program.positioned = std::move(positioned_);
+        program.grids = std::move(grids_);
+        program.curves = std::move(curves_);
+        program.is_one_function = is_one_function();
+        return program;
     }
 
     [[nodiscard]] const CurveIndex& curve_index() const { return curve_index_; }
 
   private:
-    /// True when each channel of the result is the same function of that channel alone.
+    /// True if each channel of the result is the same function of that channel alone.
     [[nodiscard]] bool is_one_function() const {
         for (const int channel : {1, 2}) {
             std::map<std::uint32_t, std::uint32_t> counterpart;
@@ -115,7 +117,7 @@ class Assembler {
         }
         return true;
     }
-    /// True when value b makes of the channel what value a makes of the first one.
+    /// True if value b is the same function of `channel` as value a is of channel 0.
     [[nodiscard]] bool is_same(std::uint32_t a, std::uint32_t b, int channel,
                                std::map<std::uint32_t, std::uint32_t>& counterpart) const {
         const TapeInstruction& x = tape_[a];
@@ -197,7 +199,7 @@ class Assembler {
         return place(static_cast<std::size_t>(slot_of_[value]));
     }
 
-    /// One vector full of the constant or the uniform.
+    /// A vector filled with the constant or uniform i.
     Operand number(std::uint32_t i, bool wide) {
         const TapeInstruction& step = tape_[i];
         const bool is_uniform = step.op == ExprOp::uniform;
@@ -215,11 +217,11 @@ class Assembler {
         return {static_cast<std::uint32_t>(it->second * kVectorBytes), true, wide};
     }
 
-    /// Where the result goes, and what it is made with.
+    /// Adds the register and the coefficients of a result to its instruction.
     void add_result(Instruction& step, std::size_t slot) {
         const Selected& s = steps_[slot];
         const auto n = static_cast<std::size_t>(s.sibling);
-        step.out[s.op == Op::grid ? static_cast<std::size_t>(s.channel) : n] = place(slot);
+        step.out[s.op == ProgramOp::grid ? static_cast<std::size_t>(s.channel) : n] = place(slot);
         std::copy(s.k.begin(), s.k.end(),
                   step.k.begin() + 3 * static_cast<std::ptrdiff_t>(s.sibling));
     }
@@ -228,7 +230,7 @@ class Assembler {
         is_wide ? to.wide.push_back(number) : to.narrow.push_back(static_cast<float>(number));
     }
 
-    /// The tables of a step and of its siblings.
+    /// The non-uniform tables of a step and of its siblings.
     [[nodiscard]] NonuniformTables at_positions(std::size_t slot, bool is_wide) const {
         std::vector<const Table*> tables = {steps_[slot].table};
         while (++slot < steps_.size() && steps_[slot].sibling > 0)
@@ -246,7 +248,8 @@ class Assembler {
         if (length > 1e-30)
             result.parts_per_unit =
                 static_cast<double>(2 * std::bit_ceil(positions.size())) / length;
-        std::vector<std::size_t> part;  // in which each cell begins, as the kernel computes it
+        std::vector<std::size_t>
+            part;  // the part in which each cell starts, computed as in the kernel
         const auto part_of = [&](auto begin, auto first) {
             using T = decltype(begin);
             return static_cast<std::size_t>((begin - first) *
@@ -263,7 +266,7 @@ class Assembler {
                     table->interpolation == Table::Interpolation::linear && i + 1 < result.cells;
                 const double slope =
                     is_line ? std::clamp(cell_slope(*table, i), -kMostWide, kMostWide) : 0;
-                // Before the first position, the first sample exactly.
+                // An x below the first position gets exactly the first sample.
                 const double distance = i > 0 || is_wide ? begin - positions[i] : 0;
                 add(result.rows, table->samples[i] + slope * distance, is_wide);
                 add(result.rows, slope, is_wide);
@@ -287,10 +290,10 @@ class Assembler {
         return result;
     }
 
-    /// Where the form of a source is among all, made where it is the first time.
-    template <class Source, class Form, class Make>
+    /// Index of the object made from a source. It is made when it is asked for the first time.
+    template <class Source, class Made, class Make>
     static std::uint32_t find(std::map<const Source*, std::uint32_t>& index, const Source& source,
-                              std::vector<Form>& all, const Make& make) {
+                              std::vector<Made>& all, const Make& make) {
         const auto [it, is_new] =
             index.try_emplace(&source, static_cast<std::uint32_t>(all.size()));
         if (is_new) all.push_back(make());
@@ -343,13 +346,13 @@ class Assembler {
 
 }  // namespace
 
-Code assemble(const FloatTape& tape, const std::vector<bool>& in_double,
-              const std::vector<Selected>& selected, const Target& target,
-              CurveIndex* curve_index) {
+Program assemble(const FloatTape& tape, const std::vector<bool>& in_double,
+                 const std::vector<Selected>& selected, const Target& target,
+                 CurveIndex* curve_index) {
     Assembler assembler(tape, in_double, selected);
-    Code code = assembler.assemble(target);
+    Program program = assembler.assemble(target);
     if (curve_index) *curve_index = assembler.curve_index();
-    return code;
+    return program;
 }
 
 }  // namespace simd

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kHalfUlp = 0x1p-24;
 
-/// A number in every half octave from `from` up to `to`, with both.
+/// Numbers from `from` to `to`, both included, one in every half octave.
 std::vector<double> half_octaves(double from, double to) {
     std::vector<double> places = {from};
     for (double x = from * 1.5; x < to; x *= std::numbers::sqrt2)
@@ -61,8 +61,8 @@ int CompiledCurve::cost() const noexcept {
         return 36 + (rows->length > 4 ? 28 : 0) + 4 * static_cast<int>(rows->restarts.size()) +
                (is_precise ? 24 : 0);
     }
-    const int steps =
-        static_cast<int>(std::bit_width(static_cast<unsigned>(segments))) - 1;  // of the search
+    const int steps = static_cast<int>(std::bit_width(static_cast<unsigned>(segments))) -
+                      1;  // steps of the search
     const int of_cells = cells == 0 ? steps * (segments <= 32 ? 4 : 8) : 2 * (cells <= 32 ? 1 : 3);
     const int of_segments = (degree + 3) * (segments <= 32 ? 1 : 3);
     const int of_doubles = is_precise ? 24 : 0;
@@ -109,7 +109,7 @@ std::optional<CompiledCurve> compile_curve(const CurveFunction& f, std::array<do
 
     if (form == CurveForm::segments)
         return curves::fit_segments(f, hi, kinks, tolerance, is_precise);
-    // What is constant from a kink on ends there: one kink less.
+    // A curve ends at a kink above which f is constant, so the fit has one kink less.
     for (const double kink : kinks) {
         const auto end = static_cast<double>(float_from(kink));
         if (end > 0x1p-60 && end < hi && is_constant(end, hi, at_top)) hi = end;

@@ -20,7 +20,7 @@ namespace curves {
 
 inline constexpr float kMostFloat = std::numeric_limits<float>::max();
 inline constexpr double kFloatMax = static_cast<double>(kMostFloat);
-/// Exponents of x below this are not told apart.
+/// All x below 2^kLowestExponent are in the first cell.
 inline constexpr int kLowestExponent = -100;
 
 inline float to_float(double x) { return static_cast<float>(x); }
@@ -28,10 +28,10 @@ inline float to_float(double x) { return static_cast<float>(x); }
 inline constexpr std::size_t kMostNodes = CompiledCurve::kMaxDegree + 1;
 using Coefficients = std::array<double, kMostNodes>;
 
-/// Numbers of the polynomials through n places.
+/// Chebyshev nodes and polynomials, for interpolation at n points.
 struct ChebyshevNumbers {
-    Coefficients node{};                              // the Chebyshev nodes of [-1, 1]
-    std::array<Coefficients, kMostNodes> cosine{};    // of T_k at the nodes
+    Coefficients node{};                              // in [-1, 1]
+    std::array<Coefficients, kMostNodes> cosine{};    // T_k at the nodes
     std::array<Coefficients, kMostNodes> monomial{};  // coefficients of T_k
 
     ChebyshevNumbers() = default;
@@ -91,7 +91,7 @@ Coefficients interpolate(const CurveFunction& f, const Place& place, int degree)
     return sum;
 }
 
-/// The least number so far, and how often it came.
+/// The least number added so far, and how often it was added.
 struct Least {
     double value = std::numeric_limits<double>::infinity();
     int times = 0;
@@ -103,15 +103,17 @@ struct Least {
     }
 };
 
-/// The ends of a function that is looked at in many places.
+/// Least and largest value of a function that is sampled at many points.
 class Ends {
   public:
     void add(double y) {
         least_.add(y);
         most_.add(-y);
     }
-    /// Between the places of a dip there may be a lower one, but what it has at its ends, or again
-    /// and again, is an end. Rounded outwards: what it has there is not limited to less.
+    /// Sets the curve's bounds. The samples may miss the lowest point of a dip, so the least value
+    /// counts as a bound only if f has it at an end of its range or more than 8 times. The same
+    /// holds for the largest value. Bounds are rounded outwards, so that they cut off no value of
+    /// f.
     void set(CompiledCurve& curve, double first, double last) const {
         const bool has_least = least_.times > 8 || least_.value >= std::min(first, last);
         const bool has_most = most_.times > 8 || -most_.value <= std::max(first, last);
@@ -120,10 +122,10 @@ class Ends {
     }
 
   private:
-    Least least_, most_;  // of the function, and of the negative function
+    Least least_, most_;  // least values of f and of -f
 };
 
-/// What a fit is to keep to.
+/// A function to fit, with its kinks and its tolerance.
 class Fit {
   protected:
     Fit(const CurveFunction& f, double hi, std::span<const double> kinks,
@@ -136,7 +138,7 @@ class Fit {
         kinks_.erase(std::unique(kinks_.begin(), kinks_.end()), kinks_.end());
     }
 
-    /// Whether polynomial(x) keeps to the tolerance over [begin, end]: at both ends, at and beside
+    /// True if polynomial(x) is within the tolerance over [begin, end]: at both ends, at and beside
     /// kinks, and between `steps` equal steps.
     template <class P>
     bool keeps(double begin, double end, int steps, const P& polynomial) {
@@ -150,19 +152,19 @@ class Fit {
                 if (place >= begin && place <= end) places_.push_back(place);
             }
         }
-        // Where it is most likely to be wrong.
+        // Ends and kinks come first, because the largest errors are most likely there.
         if (!keeps_at_places(polynomial)) return false;
         places_.clear();
         for (int i = 1; i < steps; ++i)
             places_.push_back(begin + (end - begin) * i / steps);
-        if (begin == 0) {  // the tolerance is of the result, which may be proportional to x
+        if (begin == 0) {  // the tolerance may shrink with x
             for (double x = end; x > 0x1p-126; x *= 0.37)
                 places_.push_back(x);
         }
         return keeps_at_places(polynomial);
     }
 
-    /// What all forms have in common.
+    /// A curve with the members that all forms have in common.
     [[nodiscard]] CompiledCurve curve_without_polynomials() const {
         CompiledCurve result;
         result.hi = to_float(hi_);
@@ -175,7 +177,7 @@ class Fit {
 
     const CurveFunction& f_;
     double hi_;
-    std::vector<float> kinks_;  // rising
+    std::vector<float> kinks_;  // ascending
     const CurveTolerance& tolerance_;
     bool is_precise_;
 
@@ -209,10 +211,11 @@ class Fit {
                                                     const CurveTolerance& tolerance,
                                                     bool is_precise, bool is_fused);
 
-/// The curve in its form.
+/// Value of a curve, computed in its form.
 /// @param x  above lo, up to hi
 [[nodiscard]] double value_by_segments(const CompiledCurve& curve, double x) noexcept;
 [[nodiscard]] double value_by_rows(const CompiledCurve& curve, double x) noexcept;
+/// Slope of a curve.
 /// @param x  from lo to hi
 [[nodiscard]] double slope_by_segments(const CompiledCurve& curve, double x) noexcept;
 [[nodiscard]] double slope_by_rows(const CompiledCurve& curve, double x) noexcept;

@@ -19,22 +19,23 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kNone = -1;
-/// What the error of a curve may add to an output, where that is more than a float's own rounding.
+/// Error that a curve may add to an output even if that exceeds kHalfUlps of its result.
 constexpr double kOutputFloor = 0x1p-26;
-/// What rounding of coefficients, steps and the result leaves room for.
+/// Allowed relative error of a curve: room for rounding its coefficients, its steps and its result.
 constexpr double kHalfUlps = 3;
-/// Of precise curves, the first that a curve keeps to. With 0.25, more powers in double become
-/// curves (GT7, Unreal and AgX in three.js 1.3 times as fast, BT.2446 A 2.5 times).
+/// Allowed relative errors of precise curves. The first one that a curve can keep counts. With
+/// 0.25, more powers in double become curves (GT7, Unreal and AgX in three.js 1.3 times as fast,
+/// BT.2446 A 2.5 times).
 constexpr std::array kPreciseHalfUlps = {0.25, 1.5};
 
 constexpr int kCheap = 3;
 constexpr int kCheapestFunction = 15;
 constexpr int kCheapestCurve = 20;
-/// Steps computed while looking for curves of one program, at 2 to 5 ns each. What has not been
-/// looked at by then stays as it is.
+/// Limit of the steps that fitting the curves of one program computes, at 2 to 5 ns each. Subgraphs
+/// that have not been tried by then stay as they are.
 constexpr std::size_t kMostWork = 20'000'000;
 
-/// What an instruction costs, in those of a processor and with its loads and stores; roughly.
+/// Approximate cost of a tape instruction in processor instructions, loads and stores included.
 int cost_of(const TapeInstruction& step) {
     switch (step.op) {
         case ExprOp::constant:
@@ -63,14 +64,14 @@ int cost_of(const TapeInstruction& step) {
     }
 }
 
-/// The same in double, where polynomials are longer. With 1.4 for functions, too, AgX in three.js
+/// cost_of() in double, where polynomials are longer. With 1.4 for functions, too, AgX in three.js
 /// is 9 % slower; with 2.5 for other operations, Khronos Neutral is 8 to 20 % slower.
 double cost_in_double(const TapeInstruction& step) {
     const int cost = cost_of(step);
     return cost >= kCheapestFunction ? 2.5 * cost : 1.4 * cost;
 }
 
-/// Between which values a result lies.
+/// The interval that contains the result.
 Interval interval_of(const TapeInstruction& step, const Interval& a, const Interval& b,
                      const Interval& c) {
     if (step.op == ExprOp::constant) return {step.value, step.value};
@@ -89,12 +90,12 @@ class CurveFitter {
                 const Sensitivity& sensitivity, CurveCache& cache, CurveForm form)
         : code_(code),
           outputs_(outputs),
-          influence_(sensitivity),
+          sensitivity_(sensitivity),
           cache_(cache),
           form_(form),
           value_(code.size()) {
         for (std::size_t i = 0; i < code_.size(); ++i)
-            value_[i].fill(code_[i].value);  // of constants
+            value_[i].fill(code_[i].value);  // for constants
         uses_.resize(code_.size());
         for (std::size_t i = 0; i < code_.size(); ++i) {
             for (const std::uint32_t operand : variables_of(i))
@@ -109,9 +110,9 @@ class CurveFitter {
         tried_.resize(code_.size());
     }
 
-    void fold() {
+    void fit() {
         for (const std::uint32_t output : outputs_)
-            fold_value(output);
+            fit_value(output);
         count_uses();
         for (TapeInstruction& step : code_) {
             if (!step.curve) continue;
@@ -122,15 +123,15 @@ class CurveFitter {
     }
 
   private:
-    /// Those that are no constants.
+    /// Operands of value i that are no constants.
     [[nodiscard]] std::vector<std::uint32_t> variables_of(std::size_t i) const {
         std::vector<std::uint32_t> result = operands_of(code_[i]);
         std::erase_if(result, [&](std::uint32_t v) { return code_[v].op == ExprOp::constant; });
         return result;
     }
 
-    /// An input without limits, or a step from it to its limit, which is no function for a curve:
-    /// fits have an end, and exposures are uniforms.
+    /// True for an input without limits and for the steps from it to its limit. No curve fits them,
+    /// because the range of a curve is bounded and exposures are uniforms.
     [[nodiscard]] bool is_unlimited_exposure(std::size_t i) {
         const TapeInstruction& step = code_[i];
         bool result = step.op == ExprOp::input && !step.is_limited;
@@ -140,7 +141,8 @@ class CurveFitter {
         return result;
     }
 
-    /// The last value that all of i's inputs pass through on their way to i.
+    /// The nearest value that all inputs of i pass through on their way to i; kNone if there is
+    /// none.
     [[nodiscard]] std::int64_t dominator_of(std::size_t i) const {
         const std::vector<std::uint32_t> operands = variables_of(i);
         if (operands.empty()) return kNone;
@@ -156,7 +158,7 @@ class CurveFitter {
         return common;
     }
 
-    /// What lies between `root` and i, with i, in order.
+    /// Values between `root` and i in order, with i.
     [[nodiscard]] std::vector<std::uint32_t> between(std::uint32_t root, std::uint32_t i) const {
         std::vector<bool> is_inside(i + 1);
         is_inside[i] = true;
@@ -171,13 +173,14 @@ class CurveFitter {
         return result;
     }
 
-    void fold_value(std::uint32_t i) {
+    void fit_value(std::uint32_t i) {
         if (tried_[i]) return;
         tried_[i] = true;
-        // The coefficients of a matrix on one and the same curve: one curve, not three.
+        // A matrix multiplies the same curve by several coefficients: fit the curve once, without a
+        // coefficient.
         const std::vector<std::uint32_t> operands = variables_of(i);
         if (operands.size() == 1 && uses_[operands[0]] > 1 && cost_of(code_[i]) <= kCheap)
-            return fold_value(operands[0]);
+            return fit_value(operands[0]);
         std::vector<std::uint32_t> roots;  // the farthest last
         for (std::int64_t r = dominator_[i]; r != kNone;
              r = dominator_[static_cast<std::size_t>(r)])
@@ -189,7 +192,7 @@ class CurveFitter {
                 cost += cost_of(code_[k]);
             if (cost < kCheapestCurve) break;
             const FittedCurve& found = find_curve(*root, steps, cost);
-            // The value is too much for a float, whatever it is a function of.
+            // No curve is precise enough for this value, whichever root it begins at.
             if (found.is_rejected) break;
             const CompiledCurve* curve = found.curve.get();
             if (!curve) continue;
@@ -199,13 +202,13 @@ class CurveFitter {
             fitted.curve = curve;
             fitted.node = code_[i].node;
             code_[i] = fitted;
-            return fold_value(*root);
+            return fit_value(*root);
         }
         for (const std::uint32_t operand : operands)
-            fold_value(operand);
+            fit_value(operand);
     }
 
-    /// By what outputs depend on.
+    /// Counts the uses of each value that outputs depend on.
     void count_uses() {
         std::fill(uses_.begin(), uses_.end(), 0);
         for (const std::uint32_t output : outputs_)
@@ -217,8 +220,9 @@ class CurveFitter {
         }
     }
 
-    /// Where a curve reads x times a positive uniform, it does itself what limits of x do: it has
-    /// one value up to 0. Above, a limit that x cannot reach does nothing.
+    /// Drops redundant clamps if a curve reads x times a positive uniform. A fitted curve is
+    /// constant below 0, so a clamp of x at 0 is redundant, and so is an upper limit that x cannot
+    /// reach.
     void skip_limits_before(std::uint32_t i) {
         TapeInstruction& product = code_[i];
         if (product.op != ExprOp::multiply || uses_[i] != 1) return;
@@ -235,7 +239,8 @@ class CurveFitter {
         }
     }
 
-    /// A curve over positive numbers limits its exposed input by itself.
+    /// Drops the limits of an exposed input if the range of the curve is within them, because a
+    /// curve limits its input.
     void skip_limit_of_exposure(TapeInstruction& step) {
         if (!is_limited_exposure(code_, step.a)) return;
         const CompiledCurve& curve = *step.curve;
@@ -243,7 +248,8 @@ class CurveFitter {
             step.a = exposure_steps(code_, step.a).back();
     }
 
-    /// The steps between a root and a value as text, the same for channels that are treated alike.
+    /// Key of the steps between a root and a value. Channels that are treated alike have the same
+    /// key.
     [[nodiscard]] std::string text_of(std::uint32_t root,
                                       const std::vector<std::uint32_t>& steps) const {
         std::map<std::uint32_t, std::size_t> number = {{root, 0}};
@@ -272,7 +278,7 @@ class CurveFitter {
         return text;
     }
 
-    /// Replaces each number by the value of the last step.
+    /// Replaces each x by the value of the last step.
     void run(const std::vector<std::uint32_t>& steps, std::uint32_t root, std::span<double> x) {
         for (; !x.empty(); x = x.subspan(std::min(kBlock, x.size()))) {
             const std::span<double> block = x.first(std::min(kBlock, x.size()));
@@ -292,16 +298,18 @@ class CurveFitter {
         }
     }
 
-    /// What the error of value i may be, by the exponent of `root`, so that it does not show.
+    /// Allowed error of value i for each exponent of `root`: it adds at most kOutputFloor to an
+    /// output.
     [[nodiscard]] std::array<float, CurveTolerance::kExponents> floor_of(std::uint32_t root,
                                                                          std::uint32_t i) const {
         constexpr std::size_t n = CurveTolerance::kExponents;
         std::array<double, n> largest{};
-        for (std::size_t p = 0; p < influence_.value.size(); ++p) {
-            double& here = largest[CurveTolerance::exponent_of(influence_.value[p][root])];
-            here = std::max(here, influence_.sensitivity[p][i]);
+        for (std::size_t p = 0; p < sensitivity_.value.size(); ++p) {
+            double& here = largest[CurveTolerance::exponent_of(sensitivity_.value[p][root])];
+            here = std::max(here, sensitivity_.sensitivity[p][i]);
         }
-        // Neighbors count, too; where there is no probe, the nearest ones on both sides.
+        // Neighboring exponents count, too. If a neighbor has no probe color, the nearest exponent
+        // with one counts.
         std::array<double, n> below{}, above{};
         for (std::size_t e = 1; e < n; ++e)
             below[e] = largest[e - 1] > 0 ? largest[e - 1] : below[e - 1];
@@ -323,7 +331,8 @@ class CurveFitter {
         for (const std::uint32_t i : steps) {
             if (code_[i].op == ExprOp::grid || code_[i].curve) return none;
         }
-        // Rounded to powers, so that channels that are treated alike share a curve.
+        // The upper end is rounded up to a power of 2^16, so that channels that are treated alike
+        // share a curve.
         const Interval range = {interval_[root].lo < 0 ? -kInfinity : 0,
                                 std::exp2(16 * std::ceil(std::log2(interval_[root].hi) / 16))};
         CurveTolerance tolerance;
@@ -346,7 +355,7 @@ class CurveFitter {
                                           fitted.is_precise);
                 }
             }
-            // What a precise curve stands for would be in double.
+            // Without a precise curve, these steps would be computed in double.
             double of_steps = cost;
             if (fitted.is_precise) {
                 of_steps = 0;
@@ -359,14 +368,14 @@ class CurveFitter {
         return fitted;
     }
 
-    /// Where a branch changes sides for x > 0; nothing when a step has more corners than that.
+    /// The x > 0 at which a branch changes sides; nullopt if a step has kinks that are no branches.
     std::optional<std::vector<double>> find_kinks(std::uint32_t root,
                                                   const std::vector<std::uint32_t>& steps) {
         for (const std::uint32_t i : steps) {
             if (code_[i].op == ExprOp::floor || code_[i].op == ExprOp::lookup) return std::nullopt;
         }
         std::vector<double> kinks;
-        // What is not found is found out by the fit, which then fails.
+        // If a kink is missed here, the fit fails.
         const double top = std::min(interval_[root].hi, 1e12);
         std::vector<double> places;
         for (double x = 1e-12; x < top; x *= 1.2)
@@ -379,11 +388,11 @@ class CurveFitter {
         return kinks;
     }
 
-    /// @param places  kBlock at most, rising
+    /// @param places  at most kBlock, ascending
     void find_kinks_between(std::span<const double> places, std::uint32_t root,
                             const std::vector<std::uint32_t>& steps, std::vector<double>& kinks) {
         run_block(steps, root, places);
-        // Which side every branch takes.
+        // The side that each branch takes at each place.
         std::vector<std::vector<bool>> sides(places.size());
         for (const std::uint32_t i : steps) {
             const TapeInstruction& step = code_[i];
@@ -405,7 +414,7 @@ class CurveFitter {
             if (sides[k] == sides[k - 1]) continue;
             const double lo = places[k - 1];
             const double hi = places[k];
-            // Floats are what a curve is asked for: nothing is nearer together.
+            // No two floats are closer together, and curves read floats.
             if (!(hi - lo > 1e-9 * hi)) {
                 kinks.push_back(hi);
                 continue;
@@ -440,7 +449,7 @@ class CurveFitter {
 
     std::vector<TapeInstruction>& code_;
     std::array<std::uint32_t, 3>& outputs_;
-    const Sensitivity& influence_;
+    const Sensitivity& sensitivity_;
     CurveCache& cache_;
     CurveForm form_;
     std::vector<Interval> interval_;
@@ -468,7 +477,7 @@ void reject_curve(CurveCache& cache, const CompiledCurve* curve) {
 
 void fit_curves(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
                 const Sensitivity& sensitivity, CurveCache& cache, CurveForm form) {
-    CurveFitter(code, outputs, sensitivity, cache, form).fold();
+    CurveFitter(code, outputs, sensitivity, cache, form).fit();
 }
 
 TONEWRIGHT_NAMESPACE_END

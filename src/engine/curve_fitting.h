@@ -14,28 +14,28 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A curve that was asked for.
+/// Result of fitting one function.
 struct FittedCurve {
     bool is_tried = false;
     bool is_precise = false;
-    bool is_rejected = false;                    // for good
-    std::unique_ptr<const CompiledCurve> curve;  // null for what no curve can do
+    bool is_rejected = false;                    // permanently
+    std::unique_ptr<const CompiledCurve> curve;  // null if no curve fits
 };
-/// By what they compute and how exactly.
+/// Results by a key that describes the function and its tolerance.
 using CurveCache = std::map<std::string, FittedCurve>;
 
-/// Says that the curve costs the program too much of its exactness: next time it is a precise one,
-/// and if it was that, there is none.
+/// Rejects a curve that is too coarse for its program. The next fit of its function is a precise
+/// curve. If the curve was precise already, its function gets no curve any more.
 void reject_curve(CurveCache& cache, const CompiledCurve* curve);
 
-/// Replaces what depends on one value alone, and costs more than a compiled curve of it, by such
-/// curves; then leaves out what nobody reads any more. The value may be an input or any other, such
-/// as a row of a matrix, and all that follows up to where channels meet again becomes one curve.
-/// @param code     straight-line code, each value once
-/// @param outputs  indices into it
-/// @param sensitivity  of the values of the code
-/// @param cache    owns the curves that the code refers to afterwards
-/// @param form  see simd::Target
+/// Replaces each single-input subgraph that is slower than a fitted curve by such a curve. Then
+/// removes dead code. The input is any value, such as an input channel or a row of a matrix. A
+/// subgraph may extend to the point where channels meet again.
+/// @param code  straight-line code in single-assignment form
+/// @param outputs  indices into `code`
+/// @param sensitivity  of the values in `code`
+/// @param cache  owns the curves that `code` refers to afterwards
+/// @param form  see simd::Target::curve_form
 void fit_curves(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
                 const Sensitivity& sensitivity, CurveCache& cache, CurveForm form);
 

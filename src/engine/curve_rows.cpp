@@ -31,7 +31,8 @@ float CurveRows::scale_of(float x0) noexcept {
 namespace curves {
 namespace {
 
-/// Of a row; of a precise curve, all but the first coefficient.
+/// The polynomial of a row at t. In a precise curve without the constant coefficient, which is
+/// added in double.
 float polynomial(const CurveRows& rows, const float* row, float t, bool is_precise) {
     const int lowest = is_precise ? 1 : 0;
     float y = row[rows.length - 1];
@@ -40,7 +41,7 @@ float polynomial(const CurveRows& rows, const float* row, float t, bool is_preci
     return y;
 }
 
-/// A curve in rows, of one length and number of cells an octave.
+/// Fits a curve in rows of one length, with one number of cells an octave.
 class RowFit : Fit {
   public:
     RowFit(const CurveFunction& f, double hi, std::span<const double> kinks,
@@ -52,7 +53,7 @@ class RowFit : Fit {
     }
 
     std::optional<CompiledCurve> fit() {
-        // One kink that shows can lie between two cells of the same grid.
+        // Shifts the cells so that the first kink that needs a restart lies between two cells.
         if (!place_cells(0)) return std::nullopt;
         if (!rows_.restarts.empty() &&
             !place_cells(rows_.restarts.front().from & ((std::uint32_t{1} << rows_.shift) - 1)))
@@ -63,7 +64,7 @@ class RowFit : Fit {
   private:
     using Row = std::array<float, 8>;
 
-    /// With a restart, the first of its cells.
+    /// Cells from the float with the bits `from` on, beginning with number `first_cell`.
     struct Grid {
         std::uint32_t from, base, first_cell;
     };
@@ -86,8 +87,8 @@ class RowFit : Fit {
         return std::min(static_cast<double>(std::bit_cast<float>(next - 1)), hi_);
     }
 
-    /// Chooses where cells begin, finds the first one, which reaches down to 0, and lets them begin
-    /// anew at kinks that no polynomial passes.
+    /// Chooses where cells start. The first cell reaches down to 0 and as far up as one
+    /// polynomial fits. Cells begin anew at kinks that no polynomial fits.
     bool place_cells(std::uint32_t part) {
         const std::uint32_t unit = std::uint32_t{1} << rows_.shift;
         const auto cell_at = [&](double x) {
@@ -122,7 +123,7 @@ class RowFit : Fit {
         }
         count_ = (std::bit_cast<std::uint32_t>(to_float(hi_)) - grids_.back().base) / unit + 1;
         if (count_ > CurveRows::kMaxRows) return false;
-        // What cannot be is seen soon: in one cell of each octave or two.
+        // Tries a cell in each octave or two first, so that a hopeless fit ends soon.
         constexpr std::uint32_t kStride = 13;
         for (std::uint32_t cell = kStride; cell < count_; cell += kStride) {
             if (!try_row(static_cast<double>(begin_of(cell)), end_of(cell), cell)) return false;
@@ -142,7 +143,7 @@ class RowFit : Fit {
         return result;
     }
 
-    /// The polynomial over [begin, end] into tried_; whether it keeps to the tolerance.
+    /// Fits a polynomial over [begin, end] into tried_. Returns true if it is within the tolerance.
     bool try_row(double begin, double end, std::uint32_t cell) {
         const auto x0 = static_cast<double>(begin_of(cell));
         const auto scale = static_cast<double>(CurveRows::scale_of(begin_of(cell)));
@@ -181,15 +182,15 @@ class RowFit : Fit {
     }
 
     CurveRows rows_;
-    std::vector<Grid> grids_;  // the first one, and one for each restart
-    std::uint32_t count_ = 0;  // of cells
+    std::vector<Grid> grids_;  // the first one, then one for each restart
+    std::uint32_t count_ = 0;  // number of cells
     Row tried_{};
 };
 
 }  // namespace
 
-/// The shortest rows that do it, and of these the fewest: they share the first-level cache with
-/// pixels.
+/// Tries short rows before long ones, and few before many, because they share the first-level cache
+/// with pixels.
 std::optional<CompiledCurve> fit_rows(const CurveFunction& f, double hi,
                                       std::span<const double> kinks,
                                       const CurveTolerance& tolerance, bool is_precise,
@@ -217,7 +218,7 @@ double slope_by_rows(const CompiledCurve& curve, double x) noexcept {
     const CurveRows::Place place = curve.rows->find(to_float(x));
     const auto per_x = static_cast<double>(place.scale);
     const double t = (x - static_cast<double>(place.x0)) * per_x;
-    const int first = curve.is_precise ? 1 : 0;  // behind it, number k belongs to power k - first
+    const int first = curve.is_precise ? 1 : 0;  // number k > first belongs to power k - first
     double y = 0;
     for (int k = curve.rows->length - 1; k > first; --k)
         y = y * t + (k - first) * static_cast<double>(place.row[k]);

@@ -19,7 +19,7 @@ std::size_t CompiledCurve::segment_of(float x) const noexcept {
 }
 
 std::vector<float> CompiledCurve::segment_begins() const {
-    // The bits of floats that are not negative rise with them.
+    // Floats that are not negative have the same order as their bits.
     std::vector<float> begins = {lo};
     const std::size_t last = segment_of(hi);
     for (std::size_t s = segment_of(lo) + 1; s <= last; ++s) {
@@ -47,8 +47,9 @@ struct Segment {
     float rest;
 };
 
-/// What the kernels compute. Of a precise curve x is a double, else a float.
-/// @param coefficient  k -> that of t^k
+/// The polynomial at x, with the arithmetic of the kernels. x is a double for a precise curve and a
+/// float for any other.
+/// @param coefficient  coefficient(k): the coefficient of t^k
 template <class C>
 double evaluate(double x, float scale, float offset, int degree, const C& coefficient, float rest,
                 bool is_precise) {
@@ -72,9 +73,9 @@ class CurveFit : Fit {
           shift_(shift),
           most_segments_(most_segments) {}
 
-    /// Segments of any length, without cells.
+    /// Fits segments of any length, without cells.
     std::optional<CompiledCurve> fit_free() {
-        // Ends may be at kinks and at eighths of octaves.
+        // Segments end at kinks and at eighths of octaves.
         std::vector<double> ends;
         const std::uint32_t top = cell_of(to_float(hi_));
         for (std::uint32_t cell = cell_of(0x1p-60F); cell <= top; ++cell)
@@ -85,18 +86,18 @@ class CurveFit : Fit {
         std::sort(ends.begin(), ends.end());
         ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
         double begin = 0;
-        std::size_t next = 0;     // of the ends, the first that is not behind us
-        std::size_t stride = 64;  // how far the segment before went
+        std::size_t next = 0;     // index of the first end above begin
+        std::size_t stride = 64;  // length of the previous segment, in ends
         while (next < ends.size()) {
             const auto fits = [&](std::size_t i) {
-                // Up to the float before, unless it is the last.
+                // A segment ends with the float before its end, but for the last segment.
                 const double end =
                     i + 1 == ends.size()
                         ? ends[i]
                         : static_cast<double>(std::nextafter(to_float(ends[i]), 0.0F));
                 return try_segment(begin, end);
             };
-            // Doubling the stride while it fits, then halving the rest.
+            // Doubles the stride while the segment fits, then bisects.
             std::size_t good = next;
             if (!fits(good)) return std::nullopt;
             Segment best = tried_;
@@ -123,12 +124,12 @@ class CurveFit : Fit {
     }
 
     std::optional<CompiledCurve> fit() {
-        // The first segment, from 0: as far up as one polynomial goes.
+        // The first segment begins at 0 and reaches as far up as one polynomial fits.
         const auto top = cell_of(to_float(hi_));
         std::uint32_t lowest = cell_of(to_float(std::ldexp(1.0, kLowestExponent)));
         if (!try_segment(0, std::min(edge(lowest + 1), hi_))) return std::nullopt;
         std::uint32_t failing = top + 2;
-        while (failing - lowest > 1) {  // fits up to the end of `lowest`
+        while (failing - lowest > 1) {  // the polynomial fits up to the end of `lowest`
             const std::uint32_t middle = lowest + (failing - lowest) / 2;
             (try_segment(0, std::min(edge(middle + 1), hi_)) ? lowest : failing) = middle;
         }
@@ -159,7 +160,7 @@ class CurveFit : Fit {
         return std::isfinite(x) ? static_cast<double>(x) : kFloatMax;
     }
 
-    /// The polynomial over [begin, end] into tried_; whether it keeps to the tolerance.
+    /// Fits a polynomial over [begin, end] into tried_. Returns true if it is within the tolerance.
     bool try_segment(double begin, double end) {
         Segment s{};
         s.begin = begin;
@@ -168,7 +169,7 @@ class CurveFit : Fit {
         const double half = std::max({0.5 * (end - begin), 1e-6 * end, 0x1p-110});
         s.scale = to_float(1 / half);
         s.offset = to_float(-middle / half);
-        // In the t of the rounded scale and offset.
+        // x as a function of t, with the rounded scale and offset.
         const auto x_of = [&](double t) {
             return (t - static_cast<double>(s.offset)) / static_cast<double>(s.scale);
         };
@@ -193,7 +194,7 @@ class CurveFit : Fit {
         const double begin = edge(cell);
         const double end = std::min(edge(cell + 1), hi_);
         const auto current = static_cast<int>(segments_.size()) - 1;
-        // The segment before may go on.
+        // The previous segment is extended if its polynomial fits.
         if (extend(end)) {
             cells_.push_back({current, kNever});
             return true;
@@ -203,14 +204,14 @@ class CurveFit : Fit {
             cells_.push_back({current + 1, kNever});
             return true;
         }
-        // Two in this cell: the boundary at a kink, or in the middle.
+        // Two segments in this cell, divided at a kink or in the middle.
         std::vector<double> boundaries;
         for (const float kink : kinks_)
             boundaries.push_back(static_cast<double>(kink));
         boundaries.push_back(static_cast<double>(float_from(0.5 * (begin + end))));
         for (const double boundary : boundaries) {
             if (!(boundary > begin && boundary < end)) continue;
-            // The float before it is the last of the first segment.
+            // The first segment ends with the float before the boundary.
             const double before = static_cast<double>(std::nextafter(to_float(boundary), 0.0F));
             if (!try_segment(boundary, end)) continue;
             const Segment second = tried_;
@@ -230,7 +231,7 @@ class CurveFit : Fit {
 
     bool extend(double end) {
         Segment& last = segments_.back();
-        // A polynomial over more than a few octaves is not worth trying.
+        // A polynomial over more than three octaves rarely fits.
         if (last.begin > 0 && end > 8 * last.begin) return false;
         if (!try_segment(last.begin, end)) return false;
         last = tried_;
@@ -280,14 +281,14 @@ class CurveFit : Fit {
 std::optional<CompiledCurve> fit_segments(const CurveFunction& f, double hi,
                                           std::span<const double> kinks,
                                           const CurveTolerance& tolerance, bool is_precise) {
-    // Eighths of octaves are what segments without cells end at.
+    // Shift for segments without cells, which end at eighths of octaves.
     constexpr int kFree = 20;
     const auto fit = [&](int degree, int shift, std::size_t most_segments) {
         CurveFit curve(f, hi, kinks, tolerance, is_precise, degree, shift, most_segments);
         return shift == kFree ? curve.fit_free() : curve.fit();
     };
-    // Segments above 32 cost three times as much, a degree one instruction for its coefficient and
-    // one more: the lowest degree with 32 segments at most is the best.
+    // With more than 32 segments, each coefficient costs three times as much. A degree costs its
+    // coefficient and one instruction. So the lowest degree with at most 32 segments is the best.
     for (const int shift : {23, 22, kFree}) {
         std::optional<CompiledCurve> best =
             fit(CompiledCurve::kMaxDegree, shift, CompiledCurve::kMaxSegments);

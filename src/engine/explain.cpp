@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the compiler makes of a pipeline, step by step, as text.
+// The steps of the compilation of a pipeline, as text.
 #include <fmt/format.h>
 
 #include <iterator>
@@ -16,7 +16,7 @@ namespace {
 
 using simd::VectorOp;
 
-/// In the order of VectorOp.
+/// Names in the order of VectorOp.
 constexpr const char* kVectorNames[] = {"add",
                                         "subtract",
                                         "multiply",
@@ -68,22 +68,22 @@ static_assert(std::size(kVectorNames) == static_cast<std::size_t>(VectorOp::shuf
 class Explanation {
   public:
     std::string of(const simd::Steps& steps) {
-        const simd::Code& code = steps.code;
+        const simd::Program& program = steps.program;
         curves_ = steps.curve_index;
-        line("Target {}", code.target->target);
-        line("\nTape: {} values", code.source->code().size());
-        write_tape(code.source->code(), code.source->outputs(), {});
+        line("Target {}", program.target->name);
+        line("\nTape: {} values", program.source->code().size());
+        write_tape(program.source->code(), program.source->outputs(), {});
         line("\nAfter rewriting, curve fitting and choice of precision: {} values",
              steps.tape.size());
         write_tape(steps.tape, steps.outputs, steps.in_double);
-        line("\nCurves: {}", code.curves.size());
-        for (std::size_t i = 0; i < code.curves.size(); ++i)
-            write_curve(i, code.curves[i]);
+        line("\nCurves: {}", program.curves.size());
+        for (std::size_t i = 0; i < program.curves.size(); ++i)
+            write_curve(i, program.curves[i]);
         line("\nProgram: {} instructions, {} constants, tiles of {} pixels",
-             code.instructions.size(), code.numbers.constants.size(), code.tile);
-        for (const simd::Instruction& step : code.instructions)
+             program.instructions.size(), program.numbers.constants.size(), program.tile);
+        for (const simd::Instruction& step : program.instructions)
             write_instruction(step);
-        write_machine_code(code);
+        write_machine_code(program);
         return std::move(text_);
     }
 
@@ -127,7 +127,7 @@ class Explanation {
         }
     }
 
-    /// A register of the tile, or a constant, by the bytes before it.
+    /// A register of the tile, or a constant, with its offset in bytes.
     static std::string text_of(const simd::Operand& operand) {
         return fmt::format("{}{}[{}]", operand.constant ? "constant" : "register",
                            operand.wide ? ".f64" : "", operand.offset);
@@ -139,28 +139,29 @@ class Explanation {
             if (!out.constant) text += (text.empty() ? "" : ", ") + text_of(out);
         }
         text += fmt::format(" = {}{}", simd::operation(step.op).name, step.wide ? ".f64" : "");
-        if (step.op == simd::Op::curve) text += fmt::format(" {}", step.table);
+        if (step.op == simd::ProgramOp::curve) text += fmt::format(" {}", step.table);
         for (int k = 0; k < simd::operation(step.op).operands; ++k)
             text += (k == 0 ? " " : ", ") + text_of(step.in[static_cast<std::size_t>(k)]);
         line("  {}", text);
     }
 
-    void write_machine_code(const simd::Code& code) {
-        if (!code.machine) return line("\nMachine code: none, the program is interpreted");
-        const std::optional<simd::VectorProgram> program = simd::translate(code);
-        line("\nMachine code: {} bytes of numbers", code.numbers.pool.size() * simd::kVectorBytes);
+    void write_machine_code(const simd::Program& program) {
+        if (!program.machine) return line("\nMachine code: none, the program is interpreted");
+        const std::optional<simd::VectorProgram> vectors = simd::translate(program);
+        line("\nMachine code: {} bytes of numbers",
+             program.numbers.pool.size() * simd::kVectorBytes);
         constexpr const char* kLayouts[] = {"RGB pixels", "RGBA pixels"};
         for (const auto layout : {simd::PixelLayout::rgb, simd::PixelLayout::rgba}) {
             const auto l = static_cast<std::size_t>(layout);
-            const std::vector<simd::VectorCode>& parts = program->parts[l];
+            const std::vector<simd::VectorCode>& parts = vectors->parts[l];
             for (std::size_t part = 0; part < parts.size(); ++part) {
                 line("  {}, part {} of {}: {} vector instructions a block, {} bytes of code",
                      kLayouts[l], part + 1, parts.size(), parts[part].instructions.size(),
-                     code.machine->bytes(part, layout));
+                     program.machine->bytes(part, layout));
             }
         }
         line("\nVector instructions of RGB pixels");
-        const auto& parts = program->parts[static_cast<std::size_t>(simd::PixelLayout::rgb)];
+        const auto& parts = vectors->parts[static_cast<std::size_t>(simd::PixelLayout::rgb)];
         for (std::size_t part = 0; part < parts.size(); ++part) {
             line("  part {}", part + 1);
             for (const simd::VectorInstruction& step : parts[part].instructions)

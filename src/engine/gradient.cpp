@@ -13,9 +13,8 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Pixels of a tile. Steps are many (hundreds for ACES 2.0) and read anew for each tile, so longer
-/// tiles are faster while the values that live at the same time, 4 KiB each, stay in the cache of
-/// the second level.
+/// Pixels of a tile. All steps (hundreds for ACES 2.0) are read once for each tile, so longer tiles
+/// are faster as long as the live values, 4 KiB each, stay in the second-level cache.
 constexpr std::size_t kTile = 128;
 /// A value and its derivatives by three inputs.
 constexpr std::size_t kRows = 4;
@@ -40,17 +39,17 @@ double slope_of(const Table& table, double x) {
     return (y[i + 1] - y[i]) / (at[i + 1] - at[i]);
 }
 
-/// Rows of a step: its value, its operands, and of each operand the derivatives by three inputs.
+/// Rows of a step: its value, its operands, and the derivatives of each operand by three inputs.
 struct Rows {
     double* y;
     std::array<const double*, 3> x;
-    std::array<std::array<const double*, 3>, 3> dx;  // by input, of operand
-    std::array<double*, 3> dy;                       // null: does not move with that input
+    std::array<std::array<const double*, 3>, 3> dx;  // [input][operand]
+    std::array<double*, 3> dy;  // null: the value does not depend on that input
 };
 
 using Row = std::array<double, kTile>;
 
-/// dy = f(k, i) for each input k that it moves with.
+/// Sets dy[i] = f(da, db, dc, i) for each input that the value depends on.
 template <class F>
 [[gnu::always_inline]] inline void fill(const Rows& rows, std::size_t n, const F& f) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -62,7 +61,7 @@ template <class F>
     }
 }
 
-/// dy = da slope(i), of which one that is not finite counts as 0.
+/// Sets dy[i] = da[i] slope(i). A slope that is not finite counts as 0.
 template <class F>
 [[gnu::always_inline]] inline void chain(const Rows& rows, std::size_t n, const F& slope) {
     Row factor{};
@@ -95,7 +94,7 @@ void run_grid(const TapeInstruction& step, const Rows& rows, std::size_t n) {
     });
 }
 
-/// @param moves_b  false: the second operand is the same for all inputs
+/// @param moves_b  false: the second operand depends on no input
 [[gnu::always_inline]] inline void differentiate_with_any_target(const TapeInstruction& step,
                                                                  bool moves_b, const Rows& rows,
                                                                  std::size_t n) {
@@ -172,7 +171,7 @@ void differentiate_on_baseline(const TapeInstruction& step, bool moves_b, const 
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-/// The same bits: AVX2 has no fused multiply-add.
+/// AVX2 has no fused multiply-add, so the bits are the same.
 [[gnu::target("avx2")]] void differentiate_on_avx2(const TapeInstruction& step, bool moves_b,
                                                    const Rows& rows, std::size_t n) {
     differentiate_with_any_target(step, moves_b, rows, n);
@@ -214,7 +213,7 @@ GradientEngine::GradientEngine(const Pipeline& pipeline) : tape_(pipeline) {
         Step step{.instruction = code[i]};
         const std::vector<std::uint32_t> read = operands(code[i]);
         for (std::size_t k = 0; k < 3; ++k) {
-            // An operand that the operation does not have is the first one once more.
+            // The first operand replaces operands that the operation does not have.
             const std::size_t x = k < read.size() ? read[k] : read.empty() ? i : read[0];
             if (x == i) continue;
             step.in[k] = steps_[x].out;
@@ -223,7 +222,8 @@ GradientEngine::GradientEngine(const Pipeline& pipeline) : tape_(pipeline) {
             if (!is_level(code[i].op)) step.inputs |= steps_[x].inputs;
         }
         if (code[i].op == ExprOp::input) step.inputs = 1U << static_cast<unsigned>(code[i].input);
-        // Not one of its operands': their values are read after its own is written.
+        // The register is not one of the operands': their values are read after this value is
+        // written.
         if (free.empty()) {
             step.out = register_count_++;
         } else {

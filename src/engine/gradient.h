@@ -11,15 +11,16 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Double-precision values of a pipeline, bit for bit the reference engine's, and their derivatives
-/// by its inputs: forward differentiation along the tape, for less than a second evaluation costs.
-/// Safe to share between threads.
+/// Computes the values of a pipeline in double precision, bit for bit like the reference engine,
+/// and their derivatives by its inputs. Forward differentiation along the tape costs less than a
+/// second evaluation. Safe to share between threads.
 class GradientEngine {
   public:
-    /// @throws Error  what Grid::nodes() throws
+    /// @throws Error  errors of Grid::nodes()
     explicit GradientEngine(const Pipeline& pipeline);
 
-    /// Planar. At a kink the derivative of one side, 0 where it is not finite.
+    /// Runs over planar colors. The derivative at a kink is that of one side; one that is not
+    /// finite is 0.
     /// @param slope  slope[c][k]: d out[c] / d in[k]
     void run(const std::array<const double*, 3>& in, const std::array<double*, 3>& out,
              const std::array<std::array<double*, 3>, 3>& slope, std::size_t count) const;
@@ -27,10 +28,10 @@ class GradientEngine {
   private:
     struct Step {
         TapeInstruction instruction;
-        std::size_t out = 0;  // rows of a value: itself and three derivatives
+        std::size_t out = 0;  // register of the value and its three derivatives
         std::array<std::size_t, 3> in{};
-        unsigned inputs = 0;                       // that it moves with, a bit for each
-        std::array<unsigned, 3> operand_inputs{};  // that its operands move with
+        unsigned inputs = 0;                       // that the value depends on, one bit each
+        std::array<unsigned, 3> operand_inputs{};  // that its operands depend on
     };
 
     Tape tape_;

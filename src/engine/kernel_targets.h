@@ -29,13 +29,13 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The functions of a file that Highway compiles once for each instruction set. Only the
+/// Returns the kernels of a file that Highway compiles once for each instruction set: those for the
 /// instruction sets of this machine, best first.
 ///
 /// Highway's own dispatch keeps one choice for the whole process. With this list each engine makes
 /// its own choice.
-/// @tparam Compiled  its variable template `kernels<HWY_TARGET>` points to the functions of one
-///                   instruction set, a struct with a member `target` for the name; null where the
+/// @tparam Compiled  its variable template `kernels<HWY_TARGET>` points to the kernels for one
+///                   instruction set, a struct with a member `name`, which is set here; null if the
 ///                   file is not compiled for it
 template <class Compiled>
 [[nodiscard]] auto kernels_of_this_machine() {
@@ -48,7 +48,7 @@ template <class Compiled>
     const auto add = [&](std::int64_t target, const Kernels* kernels) {
         if (!kernels || (supported & target) == 0) return;
         result.push_back(*kernels);
-        result.back().target = hwy::TargetName(target);
+        result.back().name = hwy::TargetName(target);
     };
     // The lower bit is the better instruction set.
     [&]<std::size_t... kBit>(std::index_sequence<kBit...>) {

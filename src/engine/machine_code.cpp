@@ -19,19 +19,20 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
-/// Blocks of pixels that a turn of the loop computes side by side. Three gained nothing: registers
-/// run out.
+/// Blocks of pixels that a turn of the loop computes side by side. Three are no faster, because
+/// registers run out.
 constexpr int kInterleaved = 2;
-/// How far ahead pixels are fetched by code that runs over all of them at once, in bytes. 512 to
-/// 4096 are equally fast with Zen 4, a third faster than without; with Emerald Rapids and AVX-512,
-/// 2048 is 1.1 times as fast as 1024 and 4096.
+/// Distance in bytes at which code that runs over all pixels at once prefetches. 512 to 4096 are
+/// equally fast with Zen 4, a third faster than without; with Emerald Rapids and AVX-512, 2048 is
+/// 1.1 times as fast as 1024 and 4096.
 constexpr int kFetchAhead = 2048;
 
 /// Bytes of the stack frame: a line for the caller's stack pointer, then four lines a block for
 /// spill_index.
 constexpr int kKeptBytes = 64 + 4 * 64 * kInterleaved;
-/// An index in the vector register with this number is none for QEMU 7.2 and for FEX before its
-/// pull request 3776, as it is in a general register: gathers read the first entry of the table.
+/// QEMU 7.2 and FEX before its pull request 3776 ignore the VSIB index if it is vector register 4:
+/// gathers read the first entry of the table. (General register 4 means no index.) So a gather
+/// never uses register 4 for its index.
 constexpr int kNoIndex = 4;
 using X86 = Xbyak::CodeGenerator;
 using Register = Xbyak::Xmm;
@@ -114,13 +115,13 @@ const Row* find_row(const Row (&rows)[kSize], VectorOp op) {
     return found == std::end(rows) ? nullptr : found;
 }
 
-/// Straight-line code in a loop over blocks of pixels.
+/// Generates functions: straight-line code in loops over blocks of pixels.
 class Generator : public MachineRegisters {
   public:
     explicit Generator(const VectorMachine& machine) : MachineRegisters(machine) {}
 
-    /// Where the function begins.
-    /// @param fetch_ahead, claim_ahead  see fetch(); not at all where the first is 0
+    /// Writes a function, and returns the offset at which it begins.
+    /// @param fetch_ahead, claim_ahead  see fetch(), which is left out if fetch_ahead is 0
     std::size_t write(const VectorCode& code, PixelLayout layout, int fetch_ahead, int claim_ahead,
                       int interleaved_blocks) {
         layout_ = layout;
@@ -155,14 +156,14 @@ class Generator : public MachineRegisters {
         std::for_each(saved.rbegin(), saved.rend(), [&](const Xbyak::Reg64& r) { pop(r); });
         vzeroupper();
         ret();
-        // The stack stays aligned to 64.
+        // A multiple of 64 keeps the stack aligned.
         const int frame_bytes = (slot_count_ * machine_.bytes() + 63) / 64 * 64;
         rewrite(frame, static_cast<std::uint64_t>(frame_bytes), sizeof(std::int32_t));
         return entry;
     }
 
   private:
-    /// While there are as many blocks.
+    /// Writes a loop that runs while `blocks` blocks are left.
     void write_loop(const VectorCode& code, int blocks) {
         begin(code);
         address_ = 0;
@@ -178,36 +179,35 @@ class Generator : public MachineRegisters {
         for (position_ = 0; position_ < code.instructions.size(); ++position_) {
             const VectorInstruction& step = code.instructions[position_];
             if (is_unread(step)) {
-                release(step);  // nobody reads it
+                release(step);  // nothing to write
             } else {
                 write(step);
             }
             free_dropped_slots();
         }
         add(r8, machine_.bytes() * blocks);
-        add(rsi, pixel_bytes() * blocks);
-        add(rdx, pixel_bytes() * blocks);
+        add(rsi, bytes_per_block() * blocks);
+        add(rdx, bytes_per_block() * blocks);
         sub(rcx, blocks);
         jge(loop, T_NEAR);
         L(end);
         add(rcx, blocks);
     }
 
-    /// Pixels that are read soon, and the lines where pixels will be written: the processor does
-    /// not foresee them early enough, for there is much to do between two reads.
+    /// Prefetches pixels that are read soon, and the lines where pixels will be written. The
+    /// processor alone prefetches them too late, because there is much to do between two reads.
     void fetch(int blocks) {
-        for (int at = 0; at < pixel_bytes() * blocks; at += 64) {
+        for (int at = 0; at < bytes_per_block() * blocks; at += 64) {
             prefetcht0(ptr[rsi + fetch_ahead_ + at]);
             prefetchw(ptr[rdx + claim_ahead_ + at]);
         }
     }
 
-    /// Of a block.
-    [[nodiscard]] int pixel_bytes() const {
+    [[nodiscard]] int bytes_per_block() const {
         return (layout_ == PixelLayout::rgb ? 3 : 4) * machine_.bytes();
     }
 
-    /// b from memory where it is there.
+    /// Reads b from memory if it is there.
     void write_binary(const VectorInstruction& step, const Binary& binary) {
         const Encode encode = step.wide ? binary.of_doubles : binary.of_floats;
         VectorOperand a = step.in[0];
@@ -301,18 +301,19 @@ class Generator : public MachineRegisters {
         return pixels(base, step, machine_.bytes() * step.immediate);
     }
     Xbyak::Address pixels(const Xbyak::Reg64& base, const VectorInstruction& step, int at) {
-        return ptr[base + static_cast<std::size_t>(at + pixel_bytes() * step.block)];
+        return ptr[base + static_cast<std::size_t>(at + bytes_per_block() * step.block)];
     }
     /// The i-th group of four floats of load_thirds.
     Xbyak::Address third(const Xbyak::Reg64& base, const VectorInstruction& step, int i) {
         return pixels(base, step, 16 * (step.immediate + 3 * i));
     }
-    /// Behind the line of the stack pointer, which lies behind the spilled values.
+    /// Address of an index that spill_index stored: behind the line of the stack pointer, which
+    /// lies behind the spilled values.
     Xbyak::Address kept_index(const VectorInstruction& step, int number, int pixel) {
         const int offset = 64 * (1 + number + 4 * step.block) + 4 * pixel;
         return ptr[rbp - static_cast<std::size_t>(kKeptBytes - offset)];
     }
-    /// The distance of the address from r10; loads r10 where it is too far away.
+    /// Distance of the address from r10. Loads r10 if the address is too far away.
     int distance_to(const void* address) {
         const auto to = reinterpret_cast<std::uintptr_t>(address);
         const auto distance = static_cast<std::intptr_t>(to - address_);
@@ -323,7 +324,7 @@ class Generator : public MachineRegisters {
         return 0;
     }
 
-    /// What has half the bits of a vector.
+    /// The lower half of a vector register.
     [[nodiscard]] Register half(const Register& r) const {
         return {machine_.has_avx512 ? Xbyak::Operand::YMM : Xbyak::Operand::XMM, r.getIdx()};
     }
@@ -518,7 +519,7 @@ class Generator : public MachineRegisters {
 
     void store_colors(const VectorInstruction& step) {
         const Register a = in_register(step.in[0], false);
-        if (!machine_.has_avx512) {  // the fourth as it was read: masked stores are slow
+        if (!machine_.has_avx512) {  // a blend, because masked stores are slow
             const Register r = dies(step.in[0]) ? a : vector(take());
             vblendps(r, a, pixels(rdx, step), 0x88);
             vmovups(pixels(rdx, step), r);
@@ -607,17 +608,18 @@ class Generator : public MachineRegisters {
                 const Register b = in_register(step.in[1], false);
                 return vshufps(result_after(step), a, b, step.immediate);
             }
-            default:  // a row of a table
+            default:  // in kBinary, kFused or kComparisons
                 return;
         }
     }
 
     PixelLayout layout_ = PixelLayout::rgb;
-    int fetch_ahead_ = 0;  // in bytes
+    int fetch_ahead_ = 0;  // in bytes, see fetch()
     int claim_ahead_ = 0;
-    std::uintptr_t address_ = 0;       // in r10
-    int row_index_ = kNone;            // in r9 and r11, of AVX2
-    std::array<int, 2> index_pair_{};  // of each block: in r12 and r14, or in r13 and r15
+    std::uintptr_t address_ = 0;  // the value of r10
+    int row_index_ = kNone;       // rows whose indices are in r9 and r11 (AVX2)
+    std::array<int, 2>
+        index_pair_{};  // pair of rows in r12 and r14 (or r13 and r15) for each block
 };
 
 class Assembled final : public MachineCode {
@@ -630,13 +632,14 @@ class Assembled final : public MachineCode {
             const bool is_whole = parts.size() == 1;
             const int pixel_bytes = static_cast<PixelLayout>(layout) == PixelLayout::rgb ? 12 : 16;
             for (std::size_t part = 0; part < parts.size(); ++part) {
-                // The last of several parts writes a tile's pixels when the first is long done.
+                // If there are several parts, the first one claims the lines of a tile long before
+                // the last one writes them.
                 const int claim_ahead = is_whole ? kFetchAhead : 0;
                 const int next_tile = part == 0 ? static_cast<int>(program_.tile) * pixel_bytes : 0;
                 const int fetch_ahead = is_whole ? kFetchAhead : next_tile;
-                // The processor itself begins the next turn of a short program, and 16 registers
-                // hold little of two blocks: side by side, Hable (118 instructions) is 7 % slower,
-                // and AgX of Sobotka (145) 10 % faster.
+                // For a short program, the processor begins the next turn by itself, and 16
+                // registers are few for two blocks. Side by side, Hable (118 instructions) is 7 %
+                // slower, and AgX of Sobotka (145) 10 % faster.
                 constexpr std::size_t kShort = 130;
                 const bool is_alone =
                     is_whole && !machine.has_avx512 && parts[part].instructions.size() <= kShort;
@@ -663,16 +666,16 @@ class Assembled final : public MachineCode {
 
 bool MachineCode::is_built_in() noexcept { return true; }
 
-std::shared_ptr<const MachineCode> MachineCode::make(Code& code) {
-    std::optional<VectorProgram> program = translate(code);
-    if (!program) return nullptr;
-    code.numbers.pool.resize(program->pool.size() / kVectorBytes + 1);
-    std::memcpy(code.numbers.pool.data(), program->pool.data(), program->pool.size());
-    program->pool.clear();
+std::shared_ptr<const MachineCode> MachineCode::make(Program& program) {
+    std::optional<VectorProgram> vectors = translate(program);
+    if (!vectors) return nullptr;
+    program.numbers.pool.resize(vectors->pool.size() / kVectorBytes + 1);
+    std::memcpy(program.numbers.pool.data(), vectors->pool.data(), vectors->pool.size());
+    vectors->pool.clear();
     try {
-        return std::make_shared<const Assembled>(std::move(*program), *code.target->machine);
+        return std::make_shared<const Assembled>(std::move(*vectors), *program.target->machine);
     } catch (const Xbyak::Error&) {
-        return nullptr;  // no memory that can be executed
+        return nullptr;  // no executable memory
     }
 }
 
@@ -686,7 +689,7 @@ namespace simd {
 
 bool MachineCode::is_built_in() noexcept { return false; }
 
-std::shared_ptr<const MachineCode> MachineCode::make(Code& /*code*/) { return nullptr; }
+std::shared_ptr<const MachineCode> MachineCode::make(Program& /*program*/) { return nullptr; }
 
 }  // namespace simd
 TONEWRIGHT_NAMESPACE_END

@@ -9,18 +9,18 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// A float program as code of the processor that runs now: values stay in registers, where the
-/// interpreter writes each to the first-level cache and reads it back. Computes the same bits.
+/// Machine code of a program for this processor. Values stay in registers, where the interpreter
+/// writes each to the first-level cache and reads it back. Both compute the same bits.
 class MachineCode {
   public:
-    /// Nothing where the system gives no memory that can be executed, the build has no assembler,
-    /// or the program has more values between its parts than a tile holds: then the interpreter
-    /// runs, slower.
-    /// @pre the code's target has machine code
-    /// @param code  gets the numbers that it reads
-    [[nodiscard]] static std::shared_ptr<const MachineCode> make(Code& code);
+    /// Null if the system gives no executable memory, the build has no assembler, or more values
+    /// are alive between the program's parts than a tile holds. Then the interpreter runs, which is
+    /// slower.
+    /// @pre the program's target has machine code
+    /// @param program  gets the pool of numbers that the machine code reads
+    [[nodiscard]] static std::shared_ptr<const MachineCode> make(Program& program);
 
-    /// False where the build had no assembler.
+    /// False if the build has no assembler.
     [[nodiscard]] static bool is_built_in() noexcept;
 
     MachineCode(const MachineCode&) = delete;
@@ -31,14 +31,14 @@ class MachineCode {
     [[nodiscard]] std::size_t part_count(PixelLayout layout) const noexcept {
         return bytes_[static_cast<std::size_t>(layout)].size();
     }
-    /// Of code.
+    /// Size of a part's machine code.
     [[nodiscard]] std::size_t bytes(std::size_t part, PixelLayout layout) const noexcept {
         return bytes_[static_cast<std::size_t>(layout)][part];
     }
 
-    /// Runs one part over blocks of as many pixels as the target's vectors have lanes.
-    /// @param tile     values that come from other parts or go there
-    /// @param in, out  of the parts that read or write pixels. May be the same.
+    /// Runs one part over blocks. A block has one pixel for each lane of the target's vectors.
+    /// @param tile     values that parts hand on to other parts
+    /// @param in, out  pixels, for the parts that read or write them; may be the same
     void run(std::size_t part, PixelLayout layout, const Numbers& numbers, unsigned char* tile,
              const float* in, float* out, std::size_t blocks) const noexcept {
         function_[static_cast<std::size_t>(layout)][part](tile, in, out, blocks,
@@ -51,7 +51,7 @@ class MachineCode {
     using Function = void (*)(unsigned char*, const float*, float*, std::size_t,
                               const ConstantVector* pool);
     VectorProgram program_;
-    std::array<std::vector<Function>, 2> function_;  // by layout, by part
+    std::array<std::vector<Function>, 2> function_;  // [layout][part]
     std::array<std::vector<std::size_t>, 2> bytes_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kFirstMask = 1;  // k0 means "no mask"
 constexpr int kMaskEnd = 6;
-/// Registers that an instruction may take beside those of its operands (gather).
+/// Scratch registers that an instruction may need (gather needs 3).
 constexpr int kSpare = 3;
 
 }  // namespace
@@ -43,7 +43,7 @@ void MachineRegisters::keep_constants(const VectorCode& code) {
     for (const State& s : state_) {
         if (!s.uses.empty()) ++ending[s.uses.back()];
     }
-    std::map<std::pair<std::int32_t, bool>, int> uses;  // by offset in the pool, and width
+    std::map<std::pair<std::int32_t, bool>, int> uses;  // by pool offset and width
     int alive = 0;
     int most_alive = 0;
     for (std::size_t i = 0; i < code.instructions.size(); ++i) {
@@ -51,7 +51,7 @@ void MachineRegisters::keep_constants(const VectorCode& code) {
         if (step.result != kNone && !state(step.result).uses.empty()) ++alive;
         most_alive = std::max(most_alive, alive);
         alive -= ending[i];
-        // Constants of AVX2 fill a vector, whatever they are.
+        // With AVX2, each constant fills a vector, so its width does not matter.
         const bool is_wide = machine_.has_avx512 && step.wide && step.op != VectorOp::promote_low &&
                              step.op != VectorOp::promote_high;
         for (const VectorOperand& operand : step.in) {
@@ -175,14 +175,14 @@ void MachineRegisters::drop(std::int32_t value) {
         s.reg = -1;
     }
     if (s.slot >= 0) {
-        // This instruction may read it yet, and spill another value before it does.
+        // This instruction may still read the slot after it has spilled another value.
         dropped_slots_.push_back(s.slot);
         s.slot = -1;
     }
 }
 
 bool MachineRegisters::dies(const VectorOperand& operand) {
-    if (operand.is_constant()) return kept_in(operand) == kNone;  // a copy
+    if (operand.is_constant()) return kept_in(operand) == kNone;  // its register is a copy
     if (!operand.is_value()) return false;
     const State& s = state(operand.value);
     return s.uses.back() <= position_;

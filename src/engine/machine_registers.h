@@ -14,8 +14,8 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// The registers of straight-line code, which are given as the code is written. Where none is free,
-/// the value that is needed latest goes to the stack (Belady).
+/// Allocates the registers of straight-line code while the code is written. If none is free, the
+/// value that is needed latest is spilled to the stack (Belady).
 class MachineRegisters : public Xbyak::CodeGenerator {
   protected:
     static constexpr std::int32_t kNone = VectorOperand::kNone;
@@ -34,32 +34,36 @@ class MachineRegisters : public Xbyak::CodeGenerator {
     [[nodiscard]] bool is_in_memory(const VectorOperand& operand) {
         return operand.is_constant() ? kept_in(operand) == kNone : state(operand.value).reg < 0;
     }
-    /// An operand that is in memory, as the last operand of an instruction.
+    /// Address of an operand that is in memory, for the last operand of an instruction.
     Xbyak::Address in_memory(const VectorOperand& operand);
-    /// Nobody reads its register after this instruction.
+    /// True if nothing reads the operand's register after this instruction.
     [[nodiscard]] bool dies(const VectorOperand& operand);
-    /// Nobody reads the result of this instruction.
+    /// True if nothing reads the result of this instruction.
     [[nodiscard]] bool is_unread(const VectorInstruction& step) {
         return step.result != kNone && state(step.result).uses.empty();
     }
 
     // Results.
-    /// A register without a value, which stays free of one until the instruction is written.
+    /// A register without a value. It gets none until the instruction is written.
     int take() { return take(vectors_); }
     void lock(int reg) { vectors_.is_locked[static_cast<std::size_t>(reg)] = true; }
-    /// Counts the uses of this instruction. Values without further uses leave their registers.
+    /// Ends the uses of this instruction's operands. Values without further uses leave their
+    /// registers.
     void release(const VectorInstruction& step);
     /// The register holds the value from now on.
     void define(std::int32_t value, int reg);
-    /// For the result, when the operands have been read: may be the register of one of them.
+    /// A register for a result that is written after all operands are read. It may be that of an
+    /// operand.
     Xbyak::Xmm result_after(const VectorInstruction& step);
-    /// For a result that is written before all operands are read.
+    /// A register for a result that is written before all operands are read. It is not that of an
+    /// operand.
     Xbyak::Xmm result_apart(const VectorInstruction& step);
-    /// A register with a copy of `from`: its own, if no other instruction needs it.
+    /// A register with the value of `from`: `from` itself, if no other instruction needs it, else a
+    /// copy.
     Xbyak::Xmm result_over(const VectorInstruction& step, const VectorOperand& operand,
                            const Xbyak::Xmm& from);
     Xbyak::Opmask new_mask(const VectorInstruction& step);
-    /// After each instruction: stack slots of values without further uses are free now.
+    /// Frees the stack slots of values without further uses. Called after each instruction.
     void free_dropped_slots();
 
     [[nodiscard]] Xbyak::Xmm vector(int reg) const {
@@ -68,22 +72,22 @@ class MachineRegisters : public Xbyak::CodeGenerator {
     static Xbyak::Zmm zmm(const Xbyak::Xmm& r) { return Xbyak::Zmm(r.getIdx()); }
 
     VectorMachine machine_;
-    std::size_t position_ = 0;  // of the instruction that is written
+    std::size_t position_ = 0;  // index of the instruction that is being written
     int slot_count_ = 0;        // vectors on the stack
 
   private:
-    /// Registers of one kind.
+    /// Registers of one kind: vectors or masks.
     struct File {
-        int first, end;  // those that values may have
+        int first, end;  // registers that may hold values
         std::vector<std::int32_t> holder = std::vector(static_cast<std::size_t>(end), kNone);
         std::vector<bool> is_locked = std::vector<bool>(holder.size());
     };
     struct State {
         int reg = -1;
-        bool is_mask = false;  // in k
-        int slot = -1;         // on the stack
+        bool is_mask = false;  // in a mask register
+        int slot = -1;         // slot on the stack; -1: none
         std::vector<std::size_t> uses;
-        std::size_t next = 0;  // of the uses
+        std::size_t next = 0;  // index of the next use
     };
 
     State& state(std::int32_t value) { return state_[static_cast<std::size_t>(value)]; }
@@ -97,7 +101,7 @@ class MachineRegisters : public Xbyak::CodeGenerator {
     Xbyak::Address slot_of(int slot) {
         return ptr[rsp + static_cast<std::size_t>(slot * machine_.bytes())];
     }
-    /// The register of a constant, or kNone.
+    /// The register that holds the constant, or kNone.
     [[nodiscard]] int kept_in(const VectorOperand& operand) const;
     Xbyak::Address constant(std::int32_t offset) {
         return ptr[rax + static_cast<std::size_t>(offset)];
@@ -106,7 +110,7 @@ class MachineRegisters : public Xbyak::CodeGenerator {
 
     File vectors_{}, masks_{};
     std::vector<State> state_;
-    std::vector<std::int32_t> kept_;  // constants in the last registers: offsets in the pool
+    std::vector<std::int32_t> kept_;  // pool offsets of the constants in the last registers
     std::vector<int> free_slots_, dropped_slots_;
 };
 

@@ -48,7 +48,7 @@ std::vector<Vector3> probe_colors() {
         if (i % 2) v[(i + 1) % 3] *= -1;
         add(v[0], v[1], v[2]);
     }
-    for (int i = 0; i < 500; ++i) {  // of wider gamuts, where rows cancel nearly, not wholly
+    for (int i = 0; i < 500; ++i) {  // colors of wider gamuts, for which rows nearly cancel
         const double peak = log_uniform(-6, 6);
         // One statement for each channel: compilers evaluate arguments in different orders.
         const double b = peak * random.uniform(-0.3, 1);
@@ -72,8 +72,8 @@ std::vector<Vector3> probe_colors() {
     return probes;
 }
 
-/// A cell of it is so steep that a float's half unit in the last place of the index is a good part
-/// of the budget.
+/// True if a cell of the table is so steep that rounding the index to float takes more than an
+/// eighth of the error bound.
 bool is_steep(const Table& table, double max_error) {
     if (table.interpolation == Table::Interpolation::step) return false;
     for (std::size_t i = 0; i + 1 < table.samples.size(); ++i) {
@@ -84,7 +84,7 @@ bool is_steep(const Table& table, double max_error) {
     return false;
 }
 
-/// The result is one of the operands, exactly, or a whole number.
+/// True if the result is exact: an operand, its negative, or an integer.
 bool is_exact(ExprOp op) {
     switch (op) {
         case ExprOp::input:
@@ -124,7 +124,7 @@ double half_ulps(ExprOp op) {
     }
 }
 
-/// What computing an operation in double costs over float, roughly.
+/// Approximate cost of computing an operation in double.
 double cost_of_double(ExprOp op) {
     switch (op) {
         case ExprOp::exp2:
@@ -164,8 +164,8 @@ class PrecisionChooser {
         const std::vector<Vector3> probes = probe_colors();
         for (std::size_t i = 0; i < code_.size(); ++i)
             in_double_[i] = code_[i].curve && code_[i].curve->is_precise;
-        // Where the rows of a matrix cancel, the loss has no bound, and no set of probes comes near
-        // enough to every zero of every row: these are double from the start.
+        // If a row of a matrix cancels, the loss has no bound, and no set of probe colors comes
+        // close enough to every zero of every row. So such rows are double from the start.
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (const std::vector<std::uint32_t> terms = terms_of_cancelling_row(i);
                 !terms.empty()) {
@@ -175,16 +175,16 @@ class PrecisionChooser {
                         keep_in_double(step);
                 }
             }
-            // In float the rounding of y log2(x) grows with it, and kernels have no better for an
-            // exponent that is not constant. A small power of a ratio too small for float is not
-            // small.
+            // In float, the rounding of y log2(x) grows with its size, and kernels have no better
+            // method for an exponent that is not constant. The base is double, too: a small power
+            // of a ratio that is too small for float is not small.
             if (code_[i].op == ExprOp::power && code_[code_[i].b].op != ExprOp::constant) {
                 keep_in_double(i);
                 keep_in_double(code_[i].a);
             }
         }
-        // Nor need a probe lie in a narrow and steep cell of a table: what such a table is indexed
-        // with is double from the start, and all that it is computed from.
+        // A narrow and steep cell of a table may contain no probe color. So the index of such a
+        // table is double from the start, with all values that it is computed from.
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (code_[i].op == ExprOp::lookup && !code_[i].curve &&
                 is_steep(*code_[i].table, max_error_)) {
@@ -196,15 +196,16 @@ class PrecisionChooser {
             if (is_branch(code_[i].op)) branches_.push_back({static_cast<std::uint32_t>(i), {}});
         }
         keep_large_in_double(probes);
-        // Most curves that are too coarse are so for many colors: those few are enough to say so.
-        std::vector<Vector3> few;
+        // Most curves that are too coarse are too coarse for many colors, so a part of them is
+        // enough to find these curves.
+        std::vector<Vector3> every_7th;
         for (std::size_t p = 0; p < probes.size(); p += 7)
-            few.push_back(probes[p]);
-        visit(few);
-        visit_settings(few);
+            every_7th.push_back(probes[p]);
+        visit(every_7th);
+        visit_settings(every_7th);
         if (!too_coarse_.empty()) return {in_double_, too_coarse_};
-        // A copy (min, select, ...) of a float is exact, one of a double is not: what was decided
-        // may have to be looked at again.
+        // A copy (min, select, ...) of a float is exact, but a copy of a double is not. So a choice
+        // can change the errors that an earlier choice relied on, and there are several passes.
         std::vector<Vector3> near_branches;
         for (int pass = 0; pass < 4; ++pass) {
             const std::vector<bool> before = in_double_;
@@ -217,7 +218,7 @@ class PrecisionChooser {
             if (!too_coarse_.empty()) break;
             if (pass == 0) near_branches = approach_branches();
             visit(near_branches);
-            visit_settings(few);
+            visit_settings(every_7th);
             if (in_double_ == before) break;
         }
         return {in_double_, too_coarse_};
@@ -227,7 +228,7 @@ class PrecisionChooser {
     static constexpr std::size_t kLanes = ProbeBlock::kLanes;
     using Row = ProbeBlock::Row;
 
-    /// What is asked of an instruction again and again.
+    /// Properties of an instruction that are read often.
     struct Node {
         std::array<std::uint32_t, 3> operand;
         std::size_t operands;
@@ -243,16 +244,16 @@ class PrecisionChooser {
         Vector3 rgb;
         double worst;  // see visit_lane()
     };
-    /// Where the program takes one side or the other, and probes of either.
+    /// A value with two sides to take, and probe colors that take each of them.
     struct Branch {
         std::uint32_t index;
         std::array<std::vector<Vector3>, 2> sides;
     };
     static constexpr std::size_t kPairs = 4;
 
-    /// The values whose constant multiples are added, if one of the constants is negative, or one
-    /// of the values an input, which may be negative: random floats found colors at which rows of
-    /// positive constants cancel. Otherwise empty.
+    /// The values in a sum of constant multiples that may cancel; empty for any other value. It may
+    /// cancel if a constant is negative, or if a value is an input, because inputs may be negative:
+    /// random floats found colors at which rows of positive constants cancel.
     [[nodiscard]] std::vector<std::uint32_t> terms_of_cancelling_row(std::size_t i) const {
         std::vector<std::uint32_t> values;
         if (code_[i].op != ExprOp::add) return values;
@@ -296,7 +297,8 @@ class PrecisionChooser {
         }
     }
 
-    /// What has no place in a float at an end of the uniforms.
+    /// Keeps values in double that may overflow float when the uniforms are at the ends of their
+    /// ranges.
     void keep_large_in_double(const std::vector<Vector3>& probes) {
         for (const auto end : {&TapeInstruction::least, &TapeInstruction::most}) {
             if (!block_.set_uniforms(end)) return;
@@ -317,7 +319,7 @@ class PrecisionChooser {
         }
     }
 
-    /// Evaluates a block, and what its roundings add to the outputs.
+    /// Evaluates a block of colors, and the errors that roundings add to its outputs.
     void look_at(const Vector3* colors, std::size_t n) {
         block_.evaluate(colors, n);
         block_.differentiate();
@@ -325,7 +327,8 @@ class PrecisionChooser {
         sum_squares();
     }
 
-    /// Of what each output's roundings add to it, where all is as precise as it was decided.
+    /// Sums the squares of the errors that roundings add to each output, with the precision chosen
+    /// so far.
     void sum_squares() {
         sums_ = {};
         summed_after_ = changes_;
@@ -353,8 +356,8 @@ class PrecisionChooser {
         }
     }
 
-    /// Keeps the errors of this color within what they may be.
-    /// @return  how near the worst output is to it
+    /// Chooses double for values until the errors of this color are within the budget.
+    /// @return  the squared error of the worst output, relative to the budget
     double visit_lane(std::size_t lane) {
         if (largest_.lane[lane] > kTooLarge) keep_large_in_double(lane);
         if (summed_after_ != changes_) sum_squares();
@@ -364,8 +367,9 @@ class PrecisionChooser {
         return worst;
     }
 
-    /// One color after the other.
-    /// @param each  called behind each with its number, its lane and visit_lane()
+    /// Visits one color after the other.
+    /// @param each  called after each color with its number, its lane and the result of
+    ///              visit_lane()
     template <class F>
     void visit(const std::vector<Vector3>& colors, const F& each) {
         for (std::size_t p = 0; p < colors.size(); p += kLanes) {
@@ -388,8 +392,8 @@ class PrecisionChooser {
         if (!settings_.empty()) block_.set_uniforms(&TapeInstruction::value);
     }
 
-    /// From the worst probes on to worse colors: where rows of matrices nearly cancel, or a curve
-    /// is steep, there may be few of them, and no probe among them.
+    /// Searches for worse colors near the worst probe colors. Colors for which rows of matrices
+    /// nearly cancel or a curve is steep may be few, without a probe color among them.
     void climb(std::vector<Probe>& probes) {
         constexpr std::size_t kStarts = 24;
         constexpr std::size_t kSteps = 40;
@@ -448,8 +452,9 @@ class PrecisionChooser {
         }
     }
 
-    /// Probes ever nearer to where branches turn over, from both sides: a power display has no end
-    /// of slope at black, and random colors do not come near enough to show it.
+    /// Makes probe colors that approach the border between the sides of each branch, from both
+    /// sides. A power display has an infinite slope at black, and random colors do not come close
+    /// enough to show it.
     std::vector<Vector3> approach_branches() {
         constexpr std::size_t kSteps = 50;
         struct Pair {
@@ -490,7 +495,7 @@ class PrecisionChooser {
         return result;
     }
 
-    /// What decides which sides these branches take.
+    /// The values that decide which side each of these branches takes.
     [[nodiscard]] std::vector<std::uint32_t> computed_for(
         const std::vector<std::uint32_t>& branches) const {
         std::vector<bool> is_read(code_.size());
@@ -510,7 +515,7 @@ class PrecisionChooser {
         return result;
     }
 
-    /// What rounding a value may be wrong by, in half units in the last place.
+    /// Rounding error of value i in half units in the last place.
     [[nodiscard]] double units_of(std::size_t i) const {
         const Node& node = nodes_[i];
         if (!node.is_exact) return node.half_ulps;
@@ -526,11 +531,12 @@ class PrecisionChooser {
         if (step.op == ExprOp::constant) {
             return std::fabs(v - static_cast<double>(static_cast<float>(v)));
         }
-        if (step.op == ExprOp::uniform) return kHalfUlp * std::fabs(v);  // of any value
+        if (step.op == ExprOp::uniform)
+            return kHalfUlp * std::fabs(v);  // for any value that it takes
         if (step.curve) {
             const double x = block_.value(step.a, lane);
             double error = step.curve->tolerance.at(x, v);
-            // A curve in float is exact to that for x in float.
+            // The tolerance of a curve in float holds for an x in float.
             if (!step.curve->is_precise && in_double_[step.a])
                 error += std::fabs(step.curve->slope(x) * x) * kHalfUlp;
             return i == output ? std::max(0.0, error - kHalfUlp * std::fabs(v)) : error;
@@ -542,8 +548,9 @@ class PrecisionChooser {
             if (step.table->positions.empty()) {
                 of_position = std::fabs(table_slope(*step.table, x) * x) * kHalfUlp;
             } else {
-                // The sample and the sum; the slope, the distance, their product, and the sample
-                // once more, as it may be larger than the sum.
+                // Two units for the sample and the sum. Four units of the rise: the slope, the
+                // distance, their product, and the sample once more, because it may be larger than
+                // the sum.
                 units = 2;
                 of_position = 4 * std::fabs(table_rise(*step.table, x)) * kHalfUlp;
             }
@@ -558,11 +565,13 @@ class PrecisionChooser {
                     of_position += std::fabs(slope[k] * at[k]) * kHalfUlp;
             }
         }
-        if (i == output) units = std::max(0.0, units - 1);  // that one there is in any case
+        if (i == output)
+            units = std::max(0.0, units - 1);  // the output is rounded to float in any case
         return units * std::max(kHalfUlp * std::fabs(v), kSmallestStep) + of_position;
     }
 
-    /// What each rounding adds to an output at one color: the shares of curves, and all others.
+    /// Collects the errors that roundings add to an output at one color, in curves_ and shares_
+    /// (all others).
     /// @return  the sum of their squares
     double collect_shares(std::size_t number, std::size_t lane) {
         const std::uint32_t output = outputs_[number];
@@ -583,7 +592,8 @@ class PrecisionChooser {
         return sum;
     }
 
-    /// Of one output at one color.
+    /// Keeps one output at one color within the budget.
+    /// @return  its squared error, relative to the budget
     double keep_within_budget(std::size_t number, std::size_t lane) {
         const double most = largest_sum_;
         double sum = sums_[number].lane[lane];
@@ -632,15 +642,15 @@ class PrecisionChooser {
     const std::array<std::uint32_t, 3>& outputs_;
     const std::vector<std::vector<double>>& settings_;
     double max_error_;
-    double largest_sum_;  // of the squares of what roundings add to an output
+    double largest_sum_;  // the budget: largest sum of the squares of an output's errors
     std::vector<bool> in_double_;
-    std::size_t changes_ = 0;  // of in_double_
+    std::size_t changes_ = 0;  // number of changes of in_double_
     std::vector<const CompiledCurve*> too_coarse_;
     ProbeBlock block_;
-    // Of the block's colors:
+    // For the block's colors:
     Row largest_;
     ProbeBlock::OutputRows sums_;
-    std::size_t summed_after_ = 0;  // how many changes
+    std::size_t summed_after_ = 0;  // the value of changes_ when sums_ was computed
     std::vector<Node> nodes_;
     std::vector<Share> shares_, curves_;
     std::vector<Branch> branches_;
@@ -649,10 +659,10 @@ class PrecisionChooser {
 
 }  // namespace
 
-Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
-                              const std::array<std::uint32_t, 3>& outputs,
-                              const std::vector<std::vector<double>>& settings) {
-    /// Where the derivative has no end.
+Sensitivity measure_sensitivity(const std::vector<TapeInstruction>& code,
+                                const std::array<std::uint32_t, 3>& outputs,
+                                const std::vector<std::vector<double>>& settings) {
+    /// Sensitivity for an infinite derivative.
     constexpr double kPole = 1e12;
     constexpr std::size_t kStride = 3;
     std::vector<Vector3> probes;

@@ -16,15 +16,15 @@ using Row = ProbeBlock::Row;
 using OutputRows = ProbeBlock::OutputRows;
 constexpr std::size_t kLanes = ProbeBlock::kLanes;
 
-/// Nearer to a kink than this, either side may be taken.
+/// Distance from a kink up to which rounding may take either side.
 constexpr double kNearKink = 1e-5;
 
 // Compilers unroll such short loops before they look for vector code, so the loops that take the
-// time are written in vectors.
+// time are written with vectors.
 
-/// What every processor has. `auto&` would take them for aligned to their size, which rows are not.
-/// Clang 14 does not align variables of such types where its instructions need it, so it gets
-/// vectors of one double: the same bits, slower.
+/// Vectors that every processor has. A reference to them must not be `auto&`: its type would claim
+/// an alignment to their size, which rows do not have. Clang 14 does not align variables of such
+/// types where its instructions need it, so it gets vectors of one double: the same bits, slower.
 struct Vectors {
 #if defined(__clang__)
     using Vector [[gnu::vector_size(8), gnu::may_alias]] = double;
@@ -51,7 +51,7 @@ template <class V>
     return reinterpret_cast<typename V::Vector*>(row.lane.data())[i];
 }
 
-/// Not all of it is 0.
+/// True if a lane is not 0.
 template <class V>
 [[gnu::always_inline]] inline bool is_reached(const Row& row) {
     auto any = part<V>(row, 0) != 0;
@@ -75,16 +75,17 @@ constexpr Row kMinusOnes = row_of(-1);
 /// Derivatives of one instruction by its operands, at the side of a kink that is taken.
 struct Partials {
     std::array<const Row*, 3> by{&kZeros, &kZeros, &kZeros};
-    std::array<Row, 3> row;  // for those that have to be computed
+    std::array<Row, 3> row;  // storage for those that are computed
 
-    /// Of the first n lanes.
+    /// Sets the derivative of the first n lanes.
     template <class F>
     [[gnu::always_inline]] void set(std::size_t k, std::size_t n, const F& f) {
         for (std::size_t l = 0; l < n; ++l)
             row[k].lane[l] = f(l);
         by[k] = &row[k];
     }
-    /// Of each vector: f writes it. Functions that return vectors would need AVX to be called.
+    /// Sets the derivative vector by vector. f writes each one, because functions that return
+    /// vectors would need AVX to be called.
     template <class V, class F>
     [[gnu::always_inline]] void set(std::size_t k, const F& f) {
         for_each_part<V>([&](std::size_t i) { f(i, part<V>(row[k], i)); });
@@ -92,7 +93,7 @@ struct Partials {
     }
 };
 
-/// @param n          of the lanes
+/// @param n          number of lanes
 /// @param of_second  false: the derivative by the second operand is not needed
 template <class V>
 [[gnu::always_inline]] inline void differentiate(const TapeInstruction& step, std::size_t n,
@@ -108,8 +109,8 @@ template <class V>
     const auto x1 = [&](std::size_t i) -> const Vector& { return part<V>(second, i); };
     const Vector zero = {};
     const Vector one = zero + 1.0;
-    // Of minimum and maximum: the second operand is the result where `low` is below `high`. So near
-    // to the kink either side may be taken, and what rounding adds shows.
+    // For minimum and maximum: the second operand is the result if `low` is below `high`. Near the
+    // kink, rounding may take either side, so both derivatives are 1.
     const auto set_sides = [&](const Row& low, const Row& high) {
         const auto set = [&](std::size_t k) {
             partials.set<V>(k, [&](std::size_t i, Vector& out) {
@@ -201,14 +202,14 @@ template <class V>
     }
 }
 
-/// What the code needs to go back from the outputs to the inputs.
+/// Data for the way from the outputs back to the inputs.
 struct BackwardPass {
     const std::vector<TapeInstruction>& code;
     const std::vector<std::uint32_t>& computed;
-    std::size_t n;  // of the lanes
+    std::size_t n;  // number of lanes
     const Row* value;
     OutputRows* adjoint;
-    OutputRows* has_pole;  // null: nobody asks
+    OutputRows* has_pole;  // null: not recorded
 };
 
 template <class V>
@@ -223,7 +224,7 @@ template <class V>
         for (std::size_t o = 0; o < 3; ++o)
             reaches[o] = is_reached<V>(here[o]);
         if (!reaches[0] && !reaches[1] && !reaches[2]) continue;
-        // Kernels take a constant exponent in double.
+        // Kernels take a constant exponent in double, so it has no rounding error.
         const bool of_second = step.op != ExprOp::power || pass.code[step.b].op != ExprOp::constant;
         differentiate<V>(step, pass.n, of_second, pass.value[*it], pass.value[step.a],
                          pass.value[step.b], pass.value[step.c], partials);
@@ -257,7 +258,8 @@ template <class V>
         for_each_part<V>([&](std::size_t i) {
             const auto share = part<V>(adjoint[o], i) * part<V>(error, i);
             const auto square = share * share;
-            part<V>(sums[o], i) += square == square ? square : typename V::Vector{};  // NaN is 0
+            part<V>(sums[o], i) +=
+                square == square ? square : typename V::Vector{};  // NaN counts as 0
         });
     }
 }
@@ -275,7 +277,7 @@ template <class V>
     add_squares_with<V>(adjoint, error, sums);
 }
 
-/// Largest finite one of each lane.
+/// Largest finite magnitude in each lane.
 template <class V>
 [[gnu::always_inline]] inline Row largest_with(const std::vector<Row>& rows) {
     Row largest;
@@ -299,7 +301,7 @@ struct Functions {
 };
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-// The same bits: AVX2 has no fused multiply-add.
+// AVX2 has no fused multiply-add, so the bits are the same.
 [[gnu::target("avx2")]] void run_on_avx2(const BackwardPass& pass) { run_with<Avx2Vectors>(pass); }
 [[gnu::target("avx2")]] void add_squares_on_avx2(const OutputRows& adjoint, const Row& error,
                                                  OutputRows& sums) {
@@ -327,7 +329,7 @@ const Functions& functions() {
     return best;
 }
 
-/// The cell that x is in, unless the table is constant there.
+/// The cell of x; nullopt if the table is constant there.
 std::optional<std::size_t> sloping_cell(const Table& table, double x) {
     if (table.interpolation == Table::Interpolation::step || table.samples.size() < 2) return {};
     const std::size_t cells = table.samples.size() - 1;
@@ -410,7 +412,7 @@ void ProbeBlock::run(std::uint32_t i, const Vector3* colors) {
     const auto& b = value_[step.b].lane;
     const auto& c = value_[step.c].lane;
     if (step.op == ExprOp::input) {
-        // Probes are colors after the exposure.
+        // Probe colors are colors after the exposure.
         const double exposure = step.is_limited ? 1 : step.value;
         for (std::size_t l = 0; l < size_; ++l)
             out[l] = colors[l][static_cast<std::size_t>(step.input)] / exposure;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The float program of a pipeline. The interpreter (simd_kernels.h) runs it, and vector_code.h
-// translates it for the machine code.
+// The program of a pipeline. The interpreter (simd_kernels.h) runs it, and vector_code.h translates
+// it for the machine code.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ namespace simd {
 class MachineCode;
 struct Target;
 
-/// What one instruction does with its operands a, b, c, e.
-enum class Op : std::uint8_t {
+/// Opcode. The comments call the operands in[0..3] a, b, c and d.
+enum class ProgramOp : std::uint8_t {
     copy,
     add,
     subtract,
@@ -34,7 +34,7 @@ enum class Op : std::uint8_t {
     multiply_add,       // a*b + c, rounded once where the processor can
     multiply_subtract,  // a*b - c
     subtract_product,   // c - a*b
-    dot3,               // k0*a + k1*b + k2*c, of one to three rows of a matrix
+    dot3,               // k0*a + k1*b + k2*c, for one to three rows of a matrix
     minimum,            // b < a ? b : a
     maximum,            // a < b ? b : a
     clamp,              // minimum(maximum(a, b), c)
@@ -45,8 +45,8 @@ enum class Op : std::uint8_t {
     exp2,
     log2,
     power,           // a^b
-    power_constant,  // a^k0, k0 not whole
-    power_near,      // the same in float, for a small k0: see computed_by()
+    power_constant,  // a^k0, where k0 is no integer
+    power_near,      // power_constant in float for a small k0: see computed_by()
     sine,
     cosine,
     atan2,
@@ -54,22 +54,22 @@ enum class Op : std::uint8_t {
     less_equal,
     equal,
     select,       // a != 0 ? b : c
-    select_less,  // a < b ? c : e
+    select_less,  // a < b ? c : d
     select_less_equal,
     select_equal,
     lookup,
-    lookup_nonuniform,  // of one to three tables with the same positions
-    curve,              // compiled
-    grid,               // of coordinates a, b, c: all three channels
+    lookup_nonuniform,  // one to three tables with the same positions
+    curve,              // a compiled curve
+    grid,               // a 3D LUT at the coordinates a, b, c: all three channels
 };
 
 struct Operation {
     const char* name;
     int operands;
-    /// Has up to three results.
+    /// The operation has up to three results.
     bool has_channels = false;
 };
-/// In the order of Op.
+/// Operations in the order of ProgramOp.
 inline constexpr Operation kOperations[] = {
     {"copy", 1},
     {"add", 2},
@@ -107,21 +107,21 @@ inline constexpr Operation kOperations[] = {
     {"curve", 1},
     {"grid", 3, true},
 };
-static_assert(std::size(kOperations) == static_cast<std::size_t>(Op::grid) + 1);
+static_assert(std::size(kOperations) == static_cast<std::size_t>(ProgramOp::grid) + 1);
 
-[[nodiscard]] constexpr const Operation& operation(Op op) {
+[[nodiscard]] constexpr const Operation& operation(ProgramOp op) {
     return kOperations[static_cast<std::size_t>(op)];
 }
 
-/// Where a value is: in the tile's register file, or among the constants, which stand there as one
-/// vector each and are read again and again.
+/// Location of a value: a register of the tile, or a constant. A constant fills one vector, which
+/// is read for all pixels.
 struct Operand {
     std::uint32_t offset = 0;  // in bytes
     bool constant = false;
     bool wide = false;  // double, else float
 };
 
-/// In float, in double, or both.
+/// Numbers as floats, as doubles, or as both.
 struct Samples {
     std::vector<float> narrow;
     std::vector<double> wide;
@@ -135,83 +135,85 @@ struct Samples {
     }
 };
 
-/// At equal distances over [0, 1].
+/// A table whose samples lie at equal distances over [0, 1].
 struct SampledTable {
     Samples samples;
     Table::Interpolation interpolation = Table::Interpolation::linear;
 };
 
-/// Up to three tables with the same positions. Numbers before the first position count as the
-/// first, and numbers behind the last as the last.
+/// Up to three tables with the same positions. An x below the first position counts as the first
+/// one, and an x above the last as the last one.
 struct NonuniformTables {
-    /// Equal parts between them, and in which cell each of them begins. Bisection finds the cell
-    /// of a number: positions that are halves have 15,360 cells in one part.
+    /// The range of the positions is divided into equal parts. first_cell holds the cell in which
+    /// each part begins, and bisection finds the cell of x within its part. If the positions are
+    /// all half floats, one part has 15,360 cells.
     double parts_per_unit = 0;
     Samples first_cell;
-    std::int32_t half_of_most = 0;  // a power of two, or 0: no part has twice as many further cells
-    /// Where each cell begins, and infinity for those that bisection reads behind the last. As
-    /// floats not before it: no float changes its cell.
+    std::int32_t half_of_most =
+        0;  // first step of the bisection, a power of two; 0: one cell a part
+    /// Start of each cell, then infinities, because bisection reads past the last cell. Starts in
+    /// float are rounded up, so that every float x keeps its cell.
     Samples begin;
     std::size_t cells = 0;
-    /// Of each cell in a row: where it begins, and for each table the sample there and the slope.
-    int length = 4;  // or 8
+    /// A row for each cell: its start, then the sample and the slope of each table.
+    int length = 4;  // of a row; 8 for several tables
     Samples rows;
 };
 
-/// Nodes of red, green, blue and one unused; in double where its results are.
+/// Nodes of a 3D LUT, each red, green, blue and one unused number. In double if the instruction
+/// computes in double.
 struct SampledGrid {
     int edge = 0;
     Samples nodes;
 };
 
-/// An instruction computes over a whole tile, a wide one in double, another in float, whatever its
-/// operands are kept in. An instruction that is neither wide nor a compiled curve has a float
-/// result.
+/// A step over all pixels of a tile. A wide instruction computes in double and any other in float,
+/// whichever precision its operands have. Only wide instructions and compiled curves can have
+/// double results.
 struct Instruction {
-    Op op = Op::copy;
+    ProgramOp op = ProgramOp::copy;
     bool wide = false;
-    /// Of a logarithm, or a power with a constant exponent: its operand is at least the smallest
-    /// normal float.
+    /// The operand of this log2 or power_constant is at least the smallest normal float.
     bool is_positive = false;
     static constexpr Operand kUnused = {0, true, false};
-    /// Where up to three results go. One that nobody reads is unused.
+    /// Registers of up to three results; kUnused for a result that nobody reads.
     std::array<Operand, 3> out = {kUnused, kUnused, kUnused};
     std::array<Operand, 4> in = {kUnused, kUnused, kUnused, kUnused};
     std::array<double, 9> k{};  // coefficients of dot3, exponent of power_constant
-    std::uint32_t table = 0;    // of a lookup, a curve, a grid: its index among those
+    std::uint32_t table = 0;    // index of the table, curve or grid among those of the program
 };
 
 /// Largest tile, in pixels.
 inline constexpr std::size_t kMaxTile = 256;
-inline constexpr std::size_t kVectorBytes = 64;   // the widest vector there is
-inline constexpr std::size_t kLaneMultiple = 16;  // floats in it
-/// Numbers beyond this, infinity too, count as this; NaN as 0. See limits_input().
+inline constexpr std::size_t kVectorBytes = 64;   // of AVX-512, the widest vector
+inline constexpr std::size_t kLaneMultiple = 16;  // floats in the widest vector
+/// Inputs are limited to +- this, infinities included. NaN becomes 0. See limits_input().
 inline constexpr float kLargestInput = 65504.0F;
-/// On the stack of the running thread.
+/// Size of the register file, which lies on the stack of the running thread.
 inline constexpr std::size_t kRegisterFileBytes = std::size_t{64} * 1024;
 
 struct alignas(kVectorBytes) ConstantVector {
     std::array<unsigned char, kVectorBytes> bytes;
 };
 
-/// All numbers that a program reads and that uniforms may change.
+/// The numbers that a program reads. Uniforms may change them.
 struct Numbers {
-    /// One vector full of each, for the interpreter.
+    /// Constants of the interpreter. Each fills one vector.
     std::vector<ConstantVector> constants;
-    /// Those of machine code.
+    /// Constants of machine code.
     std::vector<ConstantVector> pool;
 };
 
-/// Where the value of a uniform belongs in one of them.
+/// Location of a uniform's value in Numbers::constants or Numbers::pool.
 struct UniformPlace {
-    std::uint32_t source = 0;  // the instruction of the tape that computes it
+    std::uint32_t source = 0;  // tape instruction that computes the value
     std::uint32_t offset = 0;  // in bytes
-    std::uint32_t bytes = 0;   // to fill with it
-    bool wide = false;         // as double
-    bool is_rounded = false;   // to float before
+    std::uint32_t bytes = 0;   // filled with copies of the value
+    bool wide = false;         // stored as double
+    bool is_rounded = false;   // rounded to float before it is stored
 };
 
-/// @param bytes  to fill with floats, or with doubles where `wide`
+/// @param bytes  size of the memory that is filled with floats, or with doubles if `wide`
 inline void fill(unsigned char* to, std::size_t bytes, double value, bool wide) {
     const auto narrow = static_cast<float>(value);
     const std::size_t size = wide ? sizeof value : sizeof narrow;
@@ -219,37 +221,38 @@ inline void fill(unsigned char* to, std::size_t bytes, double value, bool wide) 
         std::memcpy(to + at, wide ? static_cast<const void*>(&value) : &narrow, size);
 }
 
-struct Code {
-    /// The one that it is compiled for, and that runs it.
+struct Program {
+    /// Instruction set that the program is compiled for and runs on.
     const Target* target = nullptr;
-    /// Float registers of the three input channels; a channel that is not read has none.
+    /// Float registers of the input channels that the program reads.
     std::array<std::uint32_t, 3> input_offset{};
     std::array<bool, 3> reads_input{};
-    /// Inputs are limited to +-kLargestInput. Otherwise the program limits them after its exposure.
+    /// True: the engine limits inputs to +-kLargestInput. False: the program limits them after its
+    /// exposure.
     bool limits_input = true;
-    /// Never wide.
+    /// Results, always in float.
     std::array<Operand, 3> output;
     std::vector<Instruction> instructions;
-    /// With typical values of the uniforms.
+    /// Numbers for the typical values of the uniforms.
     Numbers numbers;
-    std::vector<UniformPlace> uniforms;  // among the constants
-    std::shared_ptr<const Tape> source;  // computes them
+    std::vector<UniformPlace> uniforms;  // in numbers.constants
+    std::shared_ptr<const Tape> source;  // the tape that computes the uniforms' values
     std::vector<SampledTable> tables;
     std::vector<NonuniformTables> positioned;
     std::vector<SampledGrid> grids;
     std::vector<CompiledCurve> curves;
-    /// Each channel of the result is the same function of that channel alone: the floats of RGB
-    /// pixels need not be sorted by channel.
+    /// True if each output channel is the same function of its input channel alone. Then the floats
+    /// of RGB pixels need not be separated by channel.
     bool is_one_function = false;
     /// Pixels per tile: a multiple of kLaneMultiple, such that the registers fit into the file.
     std::size_t tile = 0;
-    /// The same as machine code, where it could be made. Refers to the tables, grids and curves:
-    /// a program is moved, not copied.
+    /// Machine code of the program, or null. It refers to the tables, grids and curves, so a
+    /// program is moved and never copied.
     std::shared_ptr<const MachineCode> machine;
 
-    Code() = default;
-    Code(Code&&) = default;
-    Code& operator=(Code&&) = default;
+    Program() = default;
+    Program(Program&&) = default;
+    Program& operator=(Program&&) = default;
 };
 
 }  // namespace simd

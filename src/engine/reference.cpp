@@ -14,10 +14,10 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Pixels of a tile, where the values that live at the same time leave room for so many.
+/// Pixels of a tile, if the live values leave room for so many.
 constexpr std::size_t kTile = 128;
 /// Doubles of a tile, on the stack of the running thread: its 32 KiB stay in the cache. The
-/// operators of the catalog have at most 35 values at a time.
+/// operators of the catalog have at most 35 live values.
 constexpr std::size_t kTileDoubles = 4096;
 
 /// One operation over a tile. The operation is chosen outside the loop, so that the plain ones
@@ -39,7 +39,7 @@ struct Baseline {
 };
 
 #if defined(__x86_64__) && defined(__GNUC__)
-/// The same bits: AVX2 has no fused multiply-add.
+/// AVX2 has no fused multiply-add, so the bits are the same.
 struct Avx2 {
     template <ExprOp op>
     [[gnu::target("avx2")]] static void run(double* out, const double* a, const double* b,
@@ -61,7 +61,7 @@ void run_on(const TapeInstruction& step, double* out, const double* a, const dou
     kAll[static_cast<std::size_t>(step.op)](out, a, b, c, step.table, n);
 }
 
-/// Of the same place in a grid, what several instructions make of it: a place is found once.
+/// Channels of a grid that several instructions read at the same place. The place is computed once.
 struct GridChannels {
     std::size_t count = 0;
     std::array<std::size_t, 3> channel{};
@@ -92,15 +92,15 @@ RunInstruction reference_operations() {
 struct ReferenceEngine::Program {
     /// A tile of one value: among the constants, or among the registers on the stack.
     struct Row {
-        std::size_t index = 0;   // of the register
-        std::size_t offset = 0;  // of its tile
+        std::size_t index = 0;   // number of the register
+        std::size_t offset = 0;  // start of its tile
         bool is_constant = false;
     };
     struct Step {
         const TapeInstruction* instruction;
         Row out, a, b, c;
 
-        /// Another channel of the same values in the same grid.
+        /// True if the step reads the same grid at the same place.
         [[nodiscard]] bool is_at_place_of(const Step& other) const {
             const TapeInstruction& i = *instruction;
             const TapeInstruction& o = *other.instruction;
@@ -146,7 +146,7 @@ struct ReferenceEngine::Program {
                 continue;
             }
             rows.push_back({registers.register_of[i], registers.register_of[i] * tile, false});
-            // An operand that the operation does not have is the first one once more.
+            // The first operand replaces operands that the operation does not have.
             const int count = operand_count(step.op);
             const Row a = count > 0 ? rows[step.a] : rows[i];
             steps.push_back(
@@ -206,7 +206,7 @@ void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::arr
 
 Vector3 ReferenceEngine::operator()(const Vector3& rgb) const noexcept {
     const Program& program = *program_;
-    // Side by side: a tile apart, they would push each other out of the cache.
+    // These registers are side by side. A tile apart, they would push each other out of the cache.
     alignas(64) std::array<double, kTileDoubles> registers;
     const auto read = [&](const Program::Row& row) {
         return row.is_constant ? program.constants[row.offset] : registers[row.index];

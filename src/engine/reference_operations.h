@@ -12,7 +12,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 using RunInstruction = void (*)(const TapeInstruction& step, double* out, const double* a,
                                 const double* b, const double* c, std::size_t n);
 
-/// For this processor; with the same bits for all.
+/// The operations for this processor. Their bits are the same for all processors.
 [[nodiscard]] RunInstruction reference_operations();
 
 TONEWRIGHT_NAMESPACE_END

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::int64_t kNone = -1;
 
-/// The tape's code where each number that uniforms decide on is a uniform of its own.
-std::vector<TapeInstruction> with_merged_uniforms(const Tape& tape) {
+/// The tape's code with each expression of uniforms and constants folded to one uniform.
+std::vector<TapeInstruction> fold_uniform_expressions(const Tape& tape) {
     std::vector<TapeInstruction> code = tape.code();
     const auto range = [&](std::uint32_t i) {
         const TapeInstruction& step = code[i];
@@ -25,7 +25,7 @@ std::vector<TapeInstruction> with_merged_uniforms(const Tape& tape) {
     for (std::uint32_t i = 0; i < code.size(); ++i) {
         TapeInstruction& step = code[i];
         step.source = i;
-        // As constants are multiplied by their reciprocals: see add().
+        // A product with the reciprocal replaces the division, as add() does it for constants.
         if (step.op == ExprOp::divide && !tape.is_number(i) && code[step.b].op == ExprOp::uniform) {
             step.op = ExprOp::multiply;
             step.b = tape.reciprocal(step.b);
@@ -51,10 +51,10 @@ std::vector<TapeInstruction> with_merged_uniforms(const Tape& tape) {
 }  // namespace
 
 FloatTape::FloatTape(const Tape& tape) {
-    const std::vector<TapeInstruction> code = with_merged_uniforms(tape);
+    const std::vector<TapeInstruction> code = fold_uniform_expressions(tape);
     std::vector<std::int64_t> moved(code.size(), kNone);  // old index -> new one
     const auto find = [&](std::uint32_t i) {
-        if (moved[i] == kNone) moved[i] = add(code[i]);  // a uniform, where it is first read
+        if (moved[i] == kNone) moved[i] = add(code[i]);  // adds a uniform where it is first read
         return static_cast<std::uint32_t>(moved[i]);
     };
     for (std::uint32_t i = 0; i < code.size(); ++i) {
@@ -97,7 +97,8 @@ std::uint32_t FloatTape::add(const TapeInstruction& step) {
     return last();
 }
 
-/// f(y) / y where y > 0 and f(y) = y / g: Reinhard of a luminance.
+/// True for a select of f(y) / y under the condition y > 0, with f(y) = y / g: Reinhard by
+/// luminance.
 bool FloatTape::is_scale_of_positive(const TapeInstruction& select) const {
     const TapeInstruction& condition = code_[select.a];
     const TapeInstruction& scale = code_[select.b];

@@ -12,15 +12,15 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// A tape with cheaper operations: products instead of divisions by constants and of small whole
-/// powers, functions of one value as compiled curves. Constants are shared.
+/// A tape with cheaper operations. Products replace divisions by constants and small integer
+/// powers, and compiled curves replace functions of one value. Equal constants are one value.
 class FloatTape {
   public:
     explicit FloatTape(const Tape& tape);
 
     /// @param cache  owns the curves
-    void fold(const Sensitivity& sensitivity, CurveCache& cache, CurveForm form) {
-        fit_curves(code_, outputs_, sensitivity, cache, form);
+    void fit_curves(const Sensitivity& sensitivity, CurveCache& cache, CurveForm form) {
+        tonewright::fit_curves(code_, outputs_, sensitivity, cache, form);
     }
 
     [[nodiscard]] const std::vector<TapeInstruction>& code() const { return code_; }

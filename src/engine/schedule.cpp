@@ -9,13 +9,14 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
-/// How many values of a block may wait until they are read. With AVX2, two blocks share 16
-/// registers; other values lie on the stack, and instructions read them there. With 9, ACES 2.0 is
-/// 5 % slower (Zen 4), with 14, AgX of Blender. AVX-512 has 32 registers, but is no faster with 16.
+/// Limit of the values of a block that wait to be read. With AVX2, two blocks share 16 registers;
+/// other values lie on the stack, and instructions read them there. With 9, ACES 2.0 is 5 % slower
+/// (Zen 4), with 14, AgX of Blender. AVX-512 has 32 registers, but is no faster with 16.
 constexpr int kMostAlive = 12;
 
-/// About how many cycles the processor waits for a result (Zen 4). Loads count as one, because they
-/// come early anyway: with 6, ACES 2.0 is 3 % slower. Rows wait for the store of their index.
+/// Approximate number of cycles that the processor waits for a result (Zen 4). Loads count as one,
+/// because they come early anyway: with 6, ACES 2.0 is 3 % slower. Rows wait for the store of their
+/// index.
 int latency(const VectorInstruction& step) {
     switch (step.op) {
         case VectorOp::add:
@@ -61,7 +62,7 @@ class Scheduler {
         std::vector<std::size_t> made_by(reads_left_.size());
         std::vector<std::size_t> pixels_read;
         std::size_t rows_before = kNobody;
-        std::array<std::size_t, 4> spill{};  // by the number of the index
+        std::array<std::size_t, 4> spill{};  // by index slot
         std::array<std::vector<std::size_t>, 4> rows_of_spill;
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             const VectorInstruction& step = code.instructions[i];
@@ -74,8 +75,8 @@ class Scheduler {
             }
             if (step.result != VectorOperand::kNone)
                 made_by[static_cast<std::size_t>(step.result)] = i;
-            // An index is kept until all of its rows are read, and rows of one index stay together:
-            // they share loads of it.
+            // An index slot is reused only after all of its rows are read. Rows of one index stay
+            // together, because they share loads of it.
             const std::size_t number = step.immediate % 4;
             if (step.op == VectorOp::spill_index) {
                 for (const std::size_t row : rows_of_spill[number])
@@ -88,7 +89,8 @@ class Scheduler {
                 rows_of_spill[number].push_back(i);
                 rows_before = i;
             }
-            // A picture may be written where it is read.
+            // The output may overwrite the input, so all pixels of a block are read before one is
+            // written.
             if (step.op == VectorOp::load_pixels || step.op == VectorOp::load_thirds)
                 pixels_read.push_back(i);
             if (writes_pixels(step.op)) {
@@ -111,7 +113,7 @@ class Scheduler {
             if (nodes_[i].waits_for == 0) open.push_back(i);
         }
         int alive = 0;
-        // One instruction of each block a cycle.
+        // In each cycle, one instruction of each block begins.
         for (int now = 0; !open.empty(); ++now) {
             const auto rank = [&](std::size_t i) {
                 const Node& node = nodes_[i];
@@ -146,10 +148,10 @@ class Scheduler {
     };
     struct Node {
         std::vector<Read> reads;
-        std::vector<std::size_t> next;  // what waits for it
-        int waits_for = 0;              // how many
-        int height = 0;                 // cycles from its beginning to the end of all that waits
-        int ready = 0;                  // when it can begin
+        std::vector<std::size_t> next;  // nodes that wait for this one
+        int waits_for = 0;              // number of nodes that this one waits for
+        int height = 0;  // cycles from its start to the end of the longest chain that waits
+        int ready = 0;   // cycle in which it can begin
     };
 
     void add_read(std::size_t i, std::int32_t value) {
@@ -165,7 +167,7 @@ class Scheduler {
         nodes_[first].next.push_back(second);
         ++nodes_[second].waits_for;
     }
-    /// By how many more values are alive after it.
+    /// Change of the number of live values by instruction i.
     [[nodiscard]] int growth(std::size_t i) const {
         const std::int32_t made = code_.instructions[i].result;
         int change =
@@ -177,7 +179,7 @@ class Scheduler {
 
     const VectorCode& code_;
     std::vector<Node> nodes_;
-    std::vector<int> reads_left_;  // of each value
+    std::vector<int> reads_left_;  // for each value
 };
 
 }  // namespace

@@ -13,23 +13,23 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
-/// One instruction computes both: two channels of one grid at one place, two rows of a matrix,
-/// two tables with the same positions.
+/// True if one instruction can compute both: two channels of one grid at one place, two rows of a
+/// matrix, two tables with the same positions.
 bool are_siblings(const Selected& x, const Selected& y) {
     if (x.op != y.op || x.operands != y.operands) return false;
     switch (x.op) {
-        case Op::grid:
+        case ProgramOp::grid:
             return x.grid == y.grid;
-        case Op::dot3:
+        case ProgramOp::dot3:
             return true;
-        case Op::lookup_nonuniform:
+        case ProgramOp::lookup_nonuniform:
             return x.table->positions == y.table->positions;
         default:
             return false;
     }
 }
 
-/// What is computed of positions and slopes has its place in floats.
+/// True if sums and products of the table's positions and slopes do not overflow floats.
 bool fits_floats(const Table& table) {
     for (std::size_t i = 0; i < table.positions.size(); ++i) {
         const double slope = i > 0 ? cell_slope(table, i - 1) : 0;
@@ -38,12 +38,13 @@ bool fits_floats(const Table& table) {
     return true;
 }
 
-/// The operation of the same name.
-constexpr Op same_operation(ExprOp op) {
+/// The program's operation of the same name.
+constexpr ProgramOp same_operation(ExprOp op) {
     const std::string_view name = name_of(op);
     const auto is_same = [name](const Operation& other) { return name == other.name; };
-    return static_cast<Op>(std::find_if(std::begin(kOperations), std::end(kOperations), is_same) -
-                           std::begin(kOperations));
+    return static_cast<ProgramOp>(
+        std::find_if(std::begin(kOperations), std::end(kOperations), is_same) -
+        std::begin(kOperations));
 }
 static_assert(std::all_of(std::begin(kScalarOperations), std::end(kScalarOperations),
                           [](const ScalarOperation& op) {
@@ -55,7 +56,7 @@ static_assert(std::all_of(std::begin(kScalarOperations), std::end(kScalarOperati
 
 class Selector {
   public:
-    /// @param in_double  gets those, too, that are computed and read in double anyway
+    /// @param in_double  see select()
     Selector(const FloatTape& tape, std::vector<bool>& in_double)
         : code_(tape.code()), in_double_(in_double), uses_(code_.size()), is_needed_(code_.size()) {
         for (const TapeInstruction& step : code_) {
@@ -68,7 +69,8 @@ class Selector {
         }
     }
 
-    /// From the outputs back, each value as the largest pattern that ends in it.
+    /// Goes from the outputs back to the inputs, and selects for each value the largest pattern
+    /// that ends in it.
     std::vector<Selected> select() {
         std::vector<Selected> result;
         for (std::size_t i = code_.size(); i-- > 0;) {
@@ -80,10 +82,11 @@ class Selector {
             match(code_[i]);
             // Rounding is monotone, so rounding the operands gives the rounded result, except for
             // the sign of a zero.
-            const bool rounds_before = !is_read_in_double_[i] &&
-                                       (current_.op == Op::clamp || current_.op == Op::minimum ||
-                                        current_.op == Op::maximum || current_.op == Op::negate ||
-                                        current_.op == Op::absolute);
+            const bool rounds_before =
+                !is_read_in_double_[i] &&
+                (current_.op == ProgramOp::clamp || current_.op == ProgramOp::minimum ||
+                 current_.op == ProgramOp::maximum || current_.op == ProgramOp::negate ||
+                 current_.op == ProgramOp::absolute);
             if (rounds_before) current_.wide = in_double_[i];
             const auto each_operand = [&](const auto& visit) {
                 for (const std::int64_t v : current_.operands)
@@ -104,7 +107,8 @@ class Selector {
     }
 
   private:
-    /// Up to three siblings one behind the other: their operands are there at the first.
+    /// Moves up to three siblings next to each other. The operands of all of them are computed
+    /// before the first one, because they are the same.
     static void gather_siblings(std::vector<Selected>& program) {
         for (std::size_t i = 0; i < program.size();) {
             std::size_t end = i + 1;
@@ -116,7 +120,7 @@ class Selector {
                 program[end].sibling = static_cast<int>(end - i);
                 ++end;
             }
-            // One of them, or an operand, in double, and all are computed in double.
+            // If one of the siblings is computed in double, all are.
             bool wide = false;
             for (std::size_t k = i; k < end; ++k)
                 wide = wide || program[k].wide;
@@ -128,12 +132,13 @@ class Selector {
 
     [[nodiscard]] bool is(std::uint32_t i, ExprOp op) const { return code_[i].op == op; }
     [[nodiscard]] bool is_constant(std::uint32_t i) const { return is(i, ExprOp::constant); }
-    /// Value i is computed by `op`, and for this one use alone: it can become a part of the user.
+    /// True if `op` computes value i and there is only one use of it, so that it can become part of
+    /// its user.
     [[nodiscard]] bool absorbs(std::uint32_t i, ExprOp op) const {
         return is(i, op) && uses_[i] == 1;
     }
 
-    /// A finite number, because it is a sum of multiples of inputs, or a limit of one.
+    /// True if the value is always finite: a sum of multiples of inputs, or a limit of one.
     [[nodiscard]] bool is_finite(std::uint32_t i) const {
         constexpr double kLargest = 0x1p20;
         const TapeInstruction& step = code_[i];
@@ -156,7 +161,8 @@ class Selector {
                 return false;
         }
     }
-    /// Limited to positive numbers that are no denormals. A limit of NaN is NaN.
+    /// True if the value is limited to positive normal floats. It must be finite, because a limit
+    /// of NaN is NaN.
     [[nodiscard]] bool is_positive(std::uint32_t i) const {
         const TapeInstruction& step = code_[i];
         constexpr auto kLeast = static_cast<double>(std::numeric_limits<float>::min());
@@ -166,8 +172,8 @@ class Selector {
         return step.op == ExprOp::minimum && is_positive(step.a) && is_positive(step.b);
     }
 
-    /// Makes the pattern's instruction; `absorbed` values become part of it.
-    void emit(Op op, std::initializer_list<std::uint32_t> operands,
+    /// Sets the pattern's instruction. The `absorbed` values become part of it.
+    void emit(ProgramOp op, std::initializer_list<std::uint32_t> operands,
               std::initializer_list<std::uint32_t> absorbed = {}) {
         current_.op = op;
         std::size_t n = 0;
@@ -177,7 +183,7 @@ class Selector {
             current_.wide = current_.wide || in_double_[value];
     }
 
-    /// Product of a constant and another value, used here alone.
+    /// True for a product of a constant k and a value x that is used only once.
     bool is_term(std::uint32_t i, double& k, std::uint32_t& x) const {
         if (!absorbs(i, ExprOp::multiply)) return false;
         const TapeInstruction& step = code_[i];
@@ -187,7 +193,7 @@ class Selector {
         return true;
     }
 
-    /// (k0 a + k1 b) + k2 c: a row of a matrix, or a luminance.
+    /// Matches (k0 a + k1 b) + k2 c: a row of a matrix, or a luminance.
     bool match_rows3(const TapeInstruction& sum) {
         if (!absorbs(sum.a, ExprOp::add)) return false;
         const TapeInstruction& first = code_[sum.a];
@@ -197,7 +203,7 @@ class Selector {
             !is_term(sum.b, k[2], x[2])) {
             return false;
         }
-        emit(Op::dot3, {x[0], x[1], x[2]}, {sum.a, first.a, first.b, sum.b});
+        emit(ProgramOp::dot3, {x[0], x[1], x[2]}, {sum.a, first.a, first.b, sum.b});
         current_.k = k;
         return true;
     }
@@ -214,57 +220,57 @@ class Selector {
             case ExprOp::add:
                 if (match_rows3(step)) return;
                 if (absorbs(b, ExprOp::multiply)) {
-                    return emit(Op::multiply_add, {product(b).a, product(b).b, a}, {b});
+                    return emit(ProgramOp::multiply_add, {product(b).a, product(b).b, a}, {b});
                 }
                 if (absorbs(a, ExprOp::multiply)) {
-                    return emit(Op::multiply_add, {product(a).a, product(a).b, b}, {a});
+                    return emit(ProgramOp::multiply_add, {product(a).a, product(a).b, b}, {a});
                 }
-                return emit(Op::add, {a, b});
+                return emit(ProgramOp::add, {a, b});
             case ExprOp::subtract:
                 if (absorbs(b, ExprOp::multiply)) {
-                    return emit(Op::subtract_product, {product(b).a, product(b).b, a}, {b});
+                    return emit(ProgramOp::subtract_product, {product(b).a, product(b).b, a}, {b});
                 }
                 if (absorbs(a, ExprOp::multiply)) {
-                    return emit(Op::multiply_subtract, {product(a).a, product(a).b, b}, {a});
+                    return emit(ProgramOp::multiply_subtract, {product(a).a, product(a).b, b}, {a});
                 }
-                return emit(Op::subtract, {a, b});
+                return emit(ProgramOp::subtract, {a, b});
             case ExprOp::minimum:
                 if (absorbs(a, ExprOp::maximum)) {
-                    return emit(Op::clamp, {code_[a].a, code_[a].b, b}, {a});
+                    return emit(ProgramOp::clamp, {code_[a].a, code_[a].b, b}, {a});
                 }
-                return emit(Op::minimum, {a, b});
+                return emit(ProgramOp::minimum, {a, b});
             case ExprOp::power:
                 if (is_constant(b) && code_[b].value != std::floor(code_[b].value)) {
                     current_.k[0] = code_[b].value;
                     current_.is_positive = is_positive(a);
-                    return emit(Op::power_constant, {a}, {b});
+                    return emit(ProgramOp::power_constant, {a}, {b});
                 }
-                return emit(Op::power, {a, b});
+                return emit(ProgramOp::power, {a, b});
             case ExprOp::select: {
                 const TapeInstruction& c = code_[a];
                 switch (c.op) {
                     case ExprOp::less:
-                        return emit(Op::select_less, {c.a, c.b, b, step.c});
+                        return emit(ProgramOp::select_less, {c.a, c.b, b, step.c});
                     case ExprOp::less_equal:
-                        return emit(Op::select_less_equal, {c.a, c.b, b, step.c});
+                        return emit(ProgramOp::select_less_equal, {c.a, c.b, b, step.c});
                     case ExprOp::equal:
-                        return emit(Op::select_equal, {c.a, c.b, b, step.c});
+                        return emit(ProgramOp::select_equal, {c.a, c.b, b, step.c});
                     default:
-                        return emit(Op::select, {a, b, step.c});
+                        return emit(ProgramOp::select, {a, b, step.c});
                 }
             }
             case ExprOp::lookup:
                 current_.table = step.table;
                 current_.curve = step.curve;
                 if (!step.curve && !fits_floats(*step.table)) current_.wide = true;
-                return emit(step.curve                      ? Op::curve
-                            : step.table->positions.empty() ? Op::lookup
-                                                            : Op::lookup_nonuniform,
+                return emit(step.curve                      ? ProgramOp::curve
+                            : step.table->positions.empty() ? ProgramOp::lookup
+                                                            : ProgramOp::lookup_nonuniform,
                             {a});
             case ExprOp::grid:
                 current_.grid = step.grid;
                 current_.channel = step.input;
-                return emit(Op::grid, {a, b, step.c});
+                return emit(ProgramOp::grid, {a, b, step.c});
             default: {
                 current_.op = same_operation(step.op);
                 current_.is_positive = step.op == ExprOp::log2 && is_positive(a);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The one file that Highway compiles once for each instruction set; the best one is chosen when
-// it runs. A separate function for each operation over a tile, so that the choice of what to do is
-// made once in 256 pixels or so, and the values of a tile never leave the first-level cache.
+// The interpreter. Highway compiles this file once for each instruction set, and the best one is
+// chosen when it runs. Each operation has a function that runs over a tile, so the interpreter
+// chooses an operation only once in up to 256 pixels, and the values of a tile never leave the
+// first-level cache.
 #include "engine/simd_kernels.h"
 
 #include <algorithm>
@@ -47,14 +48,14 @@ namespace simd {
 namespace HWY_NAMESPACE {
 
 // ---------------------------------------------------------------------------------------------
-// What simd_math-inl.h asks for
+// Names that simd_math-inl.h needs
 
 namespace hn = hwy::HWY_NAMESPACE;
 using hn::TFromD;  // for Highway's macros
 
 using DF = hn::ScalableTag<float>;
 using DD = hn::ScalableTag<double>;
-/// As many floats as there are doubles in a vector.
+/// Tag for a vector of as many floats as a vector has doubles.
 using DFOfDD = hn::Rebind<float, DD>;
 using DI = hn::RebindToSigned<DF>;
 
@@ -103,7 +104,7 @@ HWY_INLINE hn::Vec<D> gather(D d, std::span<const TFromD<D>> samples, std::size_
     return hn::GatherIndex(d, samples.data() + first, place);
 }
 
-/// Up to 64 numbers, and those of them that a vector of indices picks.
+/// A table of up to 64 numbers, read by a vector of indices.
 struct IndexedTable {
     const float* numbers;
     int size;
@@ -126,11 +127,12 @@ HWY_INLINE IndexedTable table(DF /*d*/, const float* numbers, int size) { return
 
 #if HWY_MAX_BYTES == 16 || (HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_AVX2)
 
-/// See GatheredRows: twice as fast.
+/// GatheredRows with loads of whole rows, which is twice as fast.
 class Rows {
   public:
     HWY_INLINE Rows(std::span<const float> numbers, hn::Vec<DI> place) : numbers_(numbers.data()) {
-        // Through memory, where a load for each costs less than taking a vector apart.
+        // The indices go through memory, because loading each one costs less than extracting it
+        // from a vector.
         const hn::RebindToUnsigned<DF> d;
         hn::Store(hn::BitCast(d, place), d, at_);
         __asm__("" : "+m"(at_));
@@ -175,14 +177,14 @@ HWY_INLINE Rows rows_at(DF /*d*/, std::span<const float> numbers, hn::Vec<DI> pl
 // ---------------------------------------------------------------------------------------------
 // Kernels: an operation over a tile
 
-/// Where the values of a tile are.
+/// Memory with the values of a tile.
 struct Frame {
     unsigned char* registers;
     const unsigned char* constants;
     std::size_t count;  // padded to whole vectors of the widest kind
 };
 
-/// One operand, ready to be read: a constant is read from the same vector again and again.
+/// An operand to read. A constant is one vector, which is read for all pixels.
 struct Source {
     const unsigned char* data;
     std::size_t step;  // 1, or 0 for a constant
@@ -211,7 +213,7 @@ struct Source {
     }
 };
 
-/// A result to where it goes.
+/// Stores a result in the precision of its register.
 HWY_INLINE void store_result(const Frame& frame, const Operand& out, std::size_t i, Vec<DD> value) {
     if (out.wide) {
         hn::Store(value, DD(), reinterpret_cast<double*>(frame.registers + out.offset) + i);
@@ -231,32 +233,33 @@ HWY_INLINE void store_result(const Frame& frame, const Operand& out, std::size_t
         store_result(frame, out, i + static_cast<std::size_t>(h) * hn::Lanes(DD()), value.half[h]);
 }
 
-template <Op op, class D>
-HWY_INLINE void over_tile(D d, const Frame& frame, const Code& code, const Instruction& step,
+template <ProgramOp op, class D>
+HWY_INLINE void over_tile(D d, const Frame& frame, const Program& program, const Instruction& step,
                           const Source* source) {
     for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
         const auto x = [&](int k) HWY_ATTR { return source[k].load(d, i); };
         const auto give = [&](std::size_t c, Vec<D> result)
                               HWY_ATTR { store_result(frame, step.out[c], i, result); };
-        compute<op>(d, code, step, x, give);
+        compute<op>(d, program, step, x, give);
     }
 }
 
-/// What each operation does over a tile.
-template <Op op>
-HWY_NOINLINE void run_op(const Frame& given, const Code& code, const Instruction& instruction) {
-    // What is written may not be these.
+/// Runs an operation over a tile.
+template <ProgramOp op>
+HWY_NOINLINE void run_op(const Frame& given, const Program& program,
+                         const Instruction& instruction) {
+    // Copies, because the compiler assumes that stores may change the originals.
     const Frame frame = given;
     const Instruction step = instruction;
     const Source source[4] = {Source(frame, step.in[0]), Source(frame, step.in[1]),
                               Source(frame, step.in[2]), Source(frame, step.in[3])};
     if constexpr (!is_always_wide(op)) {
-        if (!step.wide) return over_tile<op>(DF(), frame, code, step, source);
+        if (!step.wide) return over_tile<op>(DF(), frame, program, step, source);
     }
-    over_tile<op>(DD(), frame, code, step, source);
+    over_tile<op>(DD(), frame, program, step, source);
 }
 
-/// A curve over a tile.
+/// Runs a curve over a tile.
 template <class P>
 HWY_INLINE void over_curve(const Frame& given, const Instruction& step, const CompiledCurve& curve,
                            const P& polynomial) {
@@ -282,8 +285,9 @@ HWY_INLINE void over_curve(const Frame& given, const Instruction& step, const Co
 }
 
 template <>
-HWY_NOINLINE void run_op<Op::curve>(const Frame& frame, const Code& code, const Instruction& step) {
-    const CompiledCurve& curve = code.curves[step.table];
+HWY_NOINLINE void run_op<ProgramOp::curve>(const Frame& frame, const Program& program,
+                                           const Instruction& step) {
+    const CompiledCurve& curve = program.curves[step.table];
     if (curve.rows) {
         over_curve(frame, step, curve, RowPolynomial<DF>(DF(), *curve.rows));
     } else {
@@ -291,17 +295,18 @@ HWY_NOINLINE void run_op<Op::curve>(const Frame& frame, const Code& code, const 
     }
 }
 
-using Kernel = void (*)(const Frame&, const Code&, const Instruction&);
+using Kernel = void (*)(const Frame&, const Program&, const Instruction&);
 template <std::size_t... kOp>
 constexpr std::array<Kernel, sizeof...(kOp)> kernels_of(std::index_sequence<kOp...> /*all*/) {
-    return {run_op<static_cast<Op>(kOp)>...};
+    return {run_op<static_cast<ProgramOp>(kOp)>...};
 }
 constexpr auto kKernels = kernels_of(std::make_index_sequence<std::size(kOperations)>());
 
 // ---------------------------------------------------------------------------------------------
 // Pixels in and out
 
-/// use(r, g, b, i) with the vectors of pixels from the i-th on. Pads with 0 to `padded` pixels.
+/// Calls use(r, g, b, i) with the vectors of pixels from the i-th on. Pads with 0 to `padded`
+/// pixels.
 template <class F>
 HWY_INLINE void read_pixels(const std::array<const float*, 3>& in, std::ptrdiff_t stride,
                             std::size_t count, std::size_t padded, const F& use) {
@@ -317,7 +322,8 @@ HWY_INLINE void read_pixels(const std::array<const float*, 3>& in, std::ptrdiff_
             hn::LoadInterleaved3(d, in[0] + i * 3, r, g, b);
             use(r, g, b, i);
         }
-        // What follows the last pixel's three channels is not ours to read.
+        // The memory behind the last pixel's three channels belongs to the caller and may not be
+        // read.
         for (; stride == 4 && i + lanes < count; i += lanes) {
             hn::LoadInterleaved4(d, in[0] + i * 4, r, g, b, unused);
             use(r, g, b, i);
@@ -355,7 +361,7 @@ HWY_INLINE void write_pixels(const std::array<float*, 3>& out, std::ptrdiff_t st
             const Colors x = get(i);
             hn::StoreInterleaved3(x.channel[0], x.channel[1], x.channel[2], d, out[0] + i * 3);
         }
-        // The fourth channel is written as it was read. What follows the last pixel's three
+        // The fourth channel is written as it was read. The memory behind the last pixel's three
         // channels belongs to the caller.
         Vec<DF> unused, alpha;
         for (; stride == 4 && i + lanes < count; i += lanes) {
@@ -398,36 +404,38 @@ void unpack(const float* rgb, const std::array<float*, 3>& out, std::ptrdiff_t s
 
 #endif
 
-void interpret(const Code& code, const Numbers& numbers, const std::array<const float*, 3>& in,
-               std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
-               std::ptrdiff_t out_stride, std::size_t count) noexcept {
+void interpret(const Program& program, const Numbers& numbers,
+               const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+               const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
+               std::size_t count) noexcept {
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
     const auto* constants = reinterpret_cast<const unsigned char*>(numbers.constants.data());
     const DF d;
-    for (std::size_t begin = 0; begin < count; begin += code.tile) {
-        const std::size_t n = HWY_MIN(code.tile, count - begin);
+    for (std::size_t begin = 0; begin < count; begin += program.tile) {
+        const std::size_t n = HWY_MIN(program.tile, count - begin);
         const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
         const Frame frame{registers, constants, padded};
         const auto keep = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i) HWY_ATTR {
             const Vec<DF> rgb[3] = {r, g, b};
             for (std::size_t c = 0; c < 3; ++c) {
-                if (!code.reads_input[c]) continue;
-                const Vec<DF> x = code.limits_input ? sanitized(d, rgb[c]) : without_nan(d, rgb[c]);
-                store_result(frame, {code.input_offset[c]}, i, x);
+                if (!program.reads_input[c]) continue;
+                const Vec<DF> x =
+                    program.limits_input ? sanitized(d, rgb[c]) : without_nan(d, rgb[c]);
+                store_result(frame, {program.input_offset[c]}, i, x);
             }
         };
         read_pixels(from(in, in_stride, begin), in_stride, n, padded, keep);
-        for (const Instruction& step : code.instructions)
-            kKernels[static_cast<std::size_t>(computed_by(step))](frame, code, step);
-        const Source value[3] = {Source(frame, code.output[0]), Source(frame, code.output[1]),
-                                 Source(frame, code.output[2])};
+        for (const Instruction& step : program.instructions)
+            kKernels[static_cast<std::size_t>(computed_by(step))](frame, program, step);
+        const Source value[3] = {Source(frame, program.output[0]), Source(frame, program.output[1]),
+                                 Source(frame, program.output[2])};
         write_pixels(from(out, out_stride, begin), out_stride, n, [&](std::size_t i) HWY_ATTR {
             return Colors{{value[0].load(d, i), value[1].load(d, i), value[2].load(d, i)}};
         });
     }
 }
 
-// Permutes of AVX-512, loads of rows elsewhere.
+// AVX-512 has permutes of whole tables. Other instruction sets load rows.
 constexpr CurveForm kCurveForm = HWY_TARGET <= HWY_AVX3 ? CurveForm::segments
                                  : HWY_NATIVE_FMA       ? CurveForm::rows
                                                         : CurveForm::rows_unfused;
@@ -469,7 +477,7 @@ const Target& find_target(std::string_view name) {
     if (name.empty()) return targets().front();
     std::vector<std::string> names;
     for (const Target& target : targets())
-        names.emplace_back(target.target);
+        names.emplace_back(target.name);
     return targets()[find_choice("target", name, names, "simd engine")];
 }
 

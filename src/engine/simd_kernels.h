@@ -15,11 +15,11 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// What the vectors of an instruction set are, for machine code.
+/// Vectors of an instruction set, for machine code.
 struct VectorMachine {
     int lanes;      // floats in a vector: the pixels of a block
-    int registers;  // for vectors
-    /// Registers for masks, broadcasts in operands, permutes of whole tables.
+    int registers;  // vector registers
+    /// AVX-512: mask registers, broadcasts in operands, permutes of whole tables.
     bool has_avx512;
 
     [[nodiscard]] constexpr int bytes() const { return lanes * 4; }
@@ -27,18 +27,18 @@ struct VectorMachine {
 
 /// An instruction set, and the kernels that are compiled for it.
 struct Target {
-    const char* target = nullptr;  // its name
-    /// The form of compiled curves that is fastest there.
+    const char* name = nullptr;
+    /// Fastest form of compiled curves.
     CurveForm curve_form = CurveForm::none;
-    /// Of an instruction set that machine code is made for.
+    /// Vectors for machine code; nullopt if there is no machine code for the instruction set.
     std::optional<VectorMachine> machine = std::nullopt;
     /// Interprets the program over `count` pixels.
-    void (*interpret)(const Code& code, const Numbers& numbers,
+    void (*interpret)(const Program& program, const Numbers& numbers,
                       const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
                       const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
                       std::size_t count) noexcept = nullptr;
-    /// Copies planes to RGB pixels, up to `padded` pixels with zeros, and pixels back to planes.
-    /// Null if there is no machine code for the instruction set.
+    /// pack() copies planes to RGB pixels, and pads them with zeros to `padded` pixels. unpack()
+    /// copies pixels back to planes. Null if there is no machine code for the instruction set.
     void (*pack)(const std::array<const float*, 3>& in, std::ptrdiff_t stride, std::size_t count,
                  std::size_t padded, float* rgb) noexcept = nullptr;
     void (*unpack)(const float* rgb, const std::array<float*, 3>& out, std::ptrdiff_t stride,
@@ -50,7 +50,7 @@ struct Target {
 /// @throws Error  when this machine has no such target
 [[nodiscard]] const Target& find_target(std::string_view name = {});
 
-/// The planes are the interleaved channels of pixels `stride` floats long, in order.
+/// True if the planes are the channels, in order, of pixels that are `stride` floats long.
 template <class T>
 [[nodiscard]] bool are_interleaved(const std::array<T*, 3>& plane, std::ptrdiff_t stride) {
     return (stride == 3 || stride == 4) && plane[1] == plane[0] + 1 && plane[2] == plane[0] + 2;

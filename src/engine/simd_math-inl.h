@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The mathematics of the SIMD engine, the only text of it. Two files include it into a namespace of
-// their own: simd_kernels.cpp, where it runs on Highway's vectors, once for each instruction set,
-// and vector_code.cpp, where the same functions write machine code. Therefore both compute the same
+// The mathematics of the SIMD engine, written once. Two files include it into a namespace of their
+// own: simd_kernels.cpp, where it runs on Highway's vectors, once for each instruction set, and
+// vector_code.cpp, where the same functions write machine code. Therefore both compute the same
 // bits. The file that includes it provides
 //   - `hn`: the functions of Highway that the text calls;
 //   - HWY_INLINE and HWY_ATTR, and kHasFma: products and sums can be rounded once;
 //   - Doubles: as many doubles as a vector has floats, in kHalves vectors; promote(), demote();
 //   - double_tag(), bits_tag(): Highway's tags for doubles and for the bits of a number;
 //   - has_minus(): numbers with a sign, -0 too;
-//   - what depends on the processor most: where the numbers of a table are (see there).
+//   - functions that read tables and 3D LUTs, because they depend most on the processor.
 //
 // Coefficients are minimax polynomials (Remez exchange, 50 digits); the error beside each is that
 // of the polynomial alone. tests/unit/engine/simd_program_test.cpp holds the functions to the
@@ -24,7 +24,7 @@ using Number = hn::TFromD<D>;
 template <class D>
 inline constexpr bool kIsDouble = sizeof(Number<D>) == sizeof(double);
 
-/// A vector full of a number, rounded.
+/// A vector filled with a number, which is rounded to its type.
 template <class D>
 HWY_INLINE Vec<D> set(D d, double value) {
     return hn::Set(d, static_cast<Number<D>>(value));
@@ -40,7 +40,7 @@ HWY_INLINE Vec<D> horner(D d, Vec<D> x, double c0, C... c) {
     return hn::MulAdd(horner(d, x, c...), x, set(d, c0));
 }
 
-/// The same with even and odd powers apart: a shorter chain.
+/// horner() with even and odd powers apart: a shorter chain of dependent operations.
 template <class D, class... C>
 HWY_INLINE Vec<D> even_odd(D d, Vec<D> x, C... c) {
     constexpr int n = sizeof...(C);
@@ -54,26 +54,26 @@ HWY_INLINE Vec<D> even_odd(D d, Vec<D> x, C... c) {
     return hn::MulAdd(sum[1], x, sum[0]);
 }
 
-/// NaN gives -limit.
+/// Limits x to +-limit. NaN becomes -limit.
 template <class D>
 HWY_INLINE Vec<D> limited(D d, Vec<D> x, double limit) {
     return hn::Min(hn::Max(x, set(d, -limit)), set(d, limit));
 }
 
-/// NaN -> 0.
+/// Replaces NaN by 0.
 template <class D>
 HWY_INLINE Vec<D> without_nan(D /*d*/, Vec<D> x) {
     return hn::IfThenElseZero(hn::Eq(x, x), x);
 }
 
-/// NaN -> 0, then limited to +-65504.
+/// Replaces NaN by 0, then limits x to +-65504.
 template <class D>
 HWY_INLINE Vec<D> sanitized(D d, Vec<D> x) {
     return limited(d, without_nan(d, x), static_cast<double>(kLargestInput));
 }
 
-// Min and Max of the processor return their second operand when equal or not ordered; with the
-// operands in this order that is what expressions mean: b < a ? b : a.
+// Min and Max of the processor return their second operand if the operands are equal or not
+// ordered. With the operands in this order, they compute b < a ? b : a, as expressions do.
 template <class V>
 HWY_INLINE V minimum(V a, V b) {
     return hn::Min(b, a);
@@ -83,7 +83,7 @@ HWY_INLINE V maximum(V a, V b) {
     return hn::Max(b, a);
 }
 
-/// One for true, as the comparisons of expressions are.
+/// 1 for true and 0 for false: the result of comparisons in expressions.
 template <class D, class M>
 HWY_INLINE Vec<D> one_where(D d, M mask) {
     return hn::IfThenElseZero(mask, set(d, 1));
@@ -99,7 +99,7 @@ HWY_INLINE Vec<D> dot3(D d, const double* k, Vec<D> a, Vec<D> b, Vec<D> c) {
 // Exponents: x = 2^e (1 + f) with 1 + f in [3/4, 3/2) for finite x > 0, and x * 2^n for whole n;
 // with denormal floats, but without denormal doubles, which no float becomes.
 
-/// @param is_normal  x is no denormal
+/// @param is_normal  true: x is no denormal
 template <class D>
 HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f, bool is_normal) {
     const auto tag = bits_tag(d);
@@ -134,11 +134,12 @@ HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f, bool is_normal) {
 /// Beyond these powers of two every float is 0 or infinity.
 template <class D>
 inline constexpr double kLargestExponent = kIsDouble<D> ? 1022 : 250;
-/// What the logarithm of a positive number is limited to.
+/// Bound of the logarithm of a positive number.
 template <class D>
 inline constexpr double kLargestLog2 = kIsDouble<D> ? 1024 : 150;
 
-/// @param largest  of |n|; above kLargestExponent, n is limited to that
+/// x * 2^n.
+/// @param largest  bound of |n|; if it is above kLargestExponent, n is limited to that
 template <class D>
 HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, double largest) {
     if (largest > kLargestExponent<D>) n = limited(d, n, kLargestExponent<D>);
@@ -154,8 +155,8 @@ HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, double largest) {
         const auto whole = hn::ConvertTo(tag, n);
         constexpr double kLargestNormal = 126;
         if (largest <= kLargestNormal) return hn::Mul(x, power_of_two(whole));
-        // In two factors, so that results outside the normal numbers are rounded once, or reach 0
-        // or infinity.
+        // Two factors, so that results outside the normal numbers are rounded once, or reach 0 or
+        // infinity.
         const auto half = hn::ShiftRight<1>(whole);
         return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(whole, half)));
     }
@@ -164,7 +165,7 @@ HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, double largest) {
 // ---------------------------------------------------------------------------------------------
 // Exponential, logarithm
 
-// Polynomials in double are as exact as a result needs that becomes a float, not as doubles are.
+// Polynomials in double are as exact as a result that becomes a float needs, not as doubles are.
 
 /// 2^r for r in [-1/2, 1/2]; 2^-28.9 in float, 2^-45.9 in double.
 template <class D>
@@ -183,7 +184,7 @@ HWY_INLINE Vec<D> exp2_fraction(D d, Vec<D> r) {
 }
 
 /// 2^x.
-/// @param largest  of |x|
+/// @param largest  bound of |x|
 template <class D>
 HWY_INLINE Vec<D> exp2(D d, Vec<D> x, double largest = kInfinity) {
     if (largest > kLargestExponent<D>) {
@@ -200,7 +201,7 @@ inline constexpr double kLog2e = 1.4426950216293335;
 /// log2(1 + f) - kLog2e f for 1 + f in [3/4, 3/2), in float; 2^-27.8 of the logarithm.
 template <class D>
 HWY_INLINE Vec<D> log2_curvature(D d, Vec<D> f) {
-    // The first coefficient is the rest of 1/ln 2.
+    // The first coefficient adds the part of 1/ln 2 that kLog2e lacks.
     const auto q =
         even_odd(d, f, 1.327158027919495e-08, -0.7213475108146667, 0.48090076446533203,
                  -0.3606748580932617, 0.2883840501308441, -0.24014823138713837, 0.2091008722782135,
@@ -220,8 +221,8 @@ HWY_INLINE Vec<D> log2_double(D d, Vec<D> x) {
     return hn::MulAdd(s, p, e);
 }
 
-/// log2(x); -inf for x <= 0. In float only where sums and products are rounded once: below 3/4 the
-/// exponent is -1, and most of it cancels.
+/// log2(x); -inf for x <= 0. It runs in float only if sums and products can be rounded once: below
+/// 3/4 the exponent is -1, and most of it cancels.
 /// @param is_positive  see Instruction
 template <class D>
 HWY_INLINE Vec<D> log2(D d, Vec<D> x, bool is_positive) {
@@ -241,13 +242,13 @@ HWY_INLINE Vec<D> log2(D d, Vec<D> x, bool is_positive) {
 // Powers
 
 /// a^b in double for a > 0.
-/// @param largest  of |b|
+/// @param largest  bound of |b|
 template <class D>
 HWY_INLINE Vec<D> power_double(D d, Vec<D> a, Vec<D> b, double largest = kInfinity) {
     return exp2(d, hn::Mul(b, log2_double(d, a)), largest * kLargestLog2<D>);
 }
 
-/// Float a^b for a > 0, with the logarithm in double: for exponents of any size.
+/// a^b in float for a > 0, with the logarithm in double: for exponents of any size.
 template <class D>
 HWY_INLINE Vec<D> power_float(D d, Vec<D> a, const Doubles& b, bool is_normal) {
     const auto dd = double_tag(d);
@@ -270,7 +271,7 @@ HWY_INLINE Vec<D> power_float(D d, Vec<D> a, const Doubles& b, bool is_normal) {
     return scale(d, exp2_fraction(d, demote(rest)), demote(whole), kLargestExponent<D>);
 }
 
-/// What a^b is where a is not positive, given |a|^b.
+/// a^b for any a, given |a|^b.
 template <class D>
 HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, Vec<D> b, Vec<D> magnitude) {
     const auto zero = hn::Zero(d);
@@ -285,8 +286,8 @@ HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, Vec<D> b, Vec<D> magnitude) {
     return hn::IfThenElse(hn::Eq(b, zero), set(d, 1), result);
 }
 
-/// The same for one b that is not whole. Below 0 there is no value: 0 for b > 0, infinity for b <
-/// 0.
+/// a^b for any a and one b that is no integer, given |a|^b. For a < 0 there is no value: the result
+/// is 0 for b > 0 and infinity for b < 0.
 /// @param is_positive  see Instruction
 template <class D>
 HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, double b, Vec<D> magnitude, bool is_positive) {
@@ -296,11 +297,11 @@ HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, double b, Vec<D> magnitude, bool i
     return hn::IfThenElse(is_above, magnitude, set(d, kInfinity));
 }
 
-/// Largest exponent of power_near that keeps to 2 ulp; the rounding of its products tells.
+/// Largest exponent for which power_near() keeps to 2 ulp. It depends on the rounding of products.
 inline constexpr double kNearPower = kHasFma ? 4 : 1;
 
-/// x^y in float for one y that is not whole, |y| <= kNearPower. The product of y and the exponent
-/// of x is exact (y in two parts, the first of 11 bits); what is left is small, and so is its float
+/// x^y in float for one y that is no integer, |y| <= kNearPower. The product of y and the exponent
+/// of x is exact (y in two parts, the first of 11 bits). The rest is small, and so is its float
 /// error.
 template <class D>
 HWY_INLINE Vec<D> power_near(D d, Vec<D> x, double y, bool is_positive) {
@@ -334,7 +335,7 @@ HWY_INLINE Vec<D> power(D d, Vec<D> a, Vec<D> b) {
     }
 }
 
-/// The same for one b that is not whole; in float beyond kNearPower.
+/// a^b for one b that is no integer. In float for |b| > kNearPower, see computed_by().
 template <class D>
 HWY_INLINE Vec<D> power(D d, Vec<D> a, double b, bool is_positive) {
     if constexpr (kIsDouble<D>) {
@@ -374,7 +375,7 @@ HWY_INLINE Vec<D> sine_of_quarters(D d, Vec<D> r, Vec<D> q) {
     const auto half = hn::Mul(q, set(d, 0.5));
     const auto even = hn::Eq(hn::Floor(half), half);
     const auto value = hn::IfThenElse(even, sine, cosine);
-    // Quarters 2 and 3 (of 0..3) are upside down.
+    // Sine and cosine are negated in quarters 2 and 3 (of 0..3).
     const auto quarter = hn::NegMulAdd(hn::Floor(hn::Mul(q, set(d, 0.25))), set(d, 4), q);
     return hn::IfThenElse(hn::Lt(quarter, set(d, 2)), value, hn::Neg(value));
 }
@@ -411,36 +412,36 @@ HWY_INLINE Vec<D> atan2(D d, Vec<D> y, Vec<D> x) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Tables and 3D LUTs. places(cell): whole numbers as gather() takes them.
-// gather(d, samples, first, places): samples[first + place].
+// Tables and 3D LUTs. places(cell) converts cells to indices for gather(), and gather(d, samples,
+// first, places) reads samples[first + place].
 
-/// Four or eight numbers in a row for each pixel.
+/// A row of four or eight adjacent numbers for each pixel.
 template <class D, class I>
 struct GatheredRows {
     D d;
     std::span<const Number<D>> numbers;
     I place;
 
-    /// The first four numbers as four vectors, or the second four.
+    /// Reads the first four numbers of each row as four vectors, or the second four.
     HWY_INLINE void columns(std::size_t group, Vec<D>* result) const {
         for (std::size_t k = 0; k < 4; ++k)
             result[k] = gather(d, numbers, 4 * group + k, place);
     }
 };
 /// Processors that load a row faster have another function of this name.
-/// @param place  of the first number of the row
+/// @param place  index of the first number of the row
 template <class D, class I>
 HWY_INLINE GatheredRows<D, I> rows_at(D d, std::span<const Number<D>> numbers, I place,
                                       int /*length*/) {
     return {d, numbers, place};
 }
 
-/// Samples at equal distances over [0, 1]; what Table::operator() does.
+/// Lookup in samples at equal distances over [0, 1], as in Table::operator().
 template <class D>
 HWY_INLINE Vec<D> lookup(D d, Vec<D> x, const SampledTable& table) {
     const auto samples = table.samples.of<Number<D>>();
     const auto count = static_cast<double>(samples.size());
-    // NaN -> 0: the comparison fails.
+    // NaN becomes 0, because the comparison fails.
     const auto t = hn::Min(hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), x), set(d, 1));
     if (table.interpolation != Table::Interpolation::linear) {
         const auto cell = hn::Min(hn::Floor(hn::Mul(t, set(d, count))), set(d, count - 1));
@@ -454,13 +455,13 @@ HWY_INLINE Vec<D> lookup(D d, Vec<D> x, const SampledTable& table) {
     return hn::MulAdd(hn::Sub(position, cell), hn::Sub(b, a), a);
 }
 
-/// The same at given positions.
+/// Lookup in samples at given positions.
 template <class D>
 HWY_INLINE void lookup_nonuniform(D d, Vec<D> x, const NonuniformTables& tables, Vec<D>* result) {
     const auto begin = tables.begin.of<Number<D>>();
     const auto first = hn::Set(d, begin[0]);
     const auto last = hn::Set(d, begin[tables.cells - 1]);
-    // NaN -> the first position: the comparison fails.
+    // NaN becomes the first position, because the comparison fails.
     const auto t = hn::Min(hn::IfThenElse(hn::Gt(x, first), x, first), last);
     const auto part = hn::Mul(hn::Sub(t, first), set(d, tables.parts_per_unit));
     auto cell = gather(d, tables.first_cell.of<Number<D>>(), 0, places(part));
@@ -489,8 +490,8 @@ HWY_INLINE void interpolate(D d, const Vec<D>* given, const SampledGrid& grid, V
         cell[c] = hn::Min(hn::Floor(place), set(d, edge - 2));
         f[c] = hn::Sub(place, cell[c]);
     }
-    // Numbers from one node to the next. Four times whole numbers below 2^24 are exact in float,
-    // and so are their sums.
+    // Numbers from one node to the next. Four times integers below 2^24 are exact in float, and so
+    // are their sums.
     const auto n0 = set(d, 4);
     const auto n1 = set(d, 4 * edge);
     const auto n2 = set(d, 4 * edge * edge);
@@ -522,7 +523,8 @@ HWY_INLINE void interpolate(D d, const Vec<D>* given, const SampledGrid& grid, V
 // ---------------------------------------------------------------------------------------------
 // Compiled curves (compiled_curve.h)
 
-/// Ends of a curve, vectors from the start: what a kernel writes may not be the curve.
+/// Ends of a curve as vectors, which are loaded once: the compiler assumes that the stores of a
+/// kernel may change the curve.
 template <class D>
 struct CurveEnds {
     Vec<D> lo, hi, least, most, at_lo, rest_at_lo;
@@ -538,13 +540,13 @@ struct CurveEnds {
     HWY_INLINE Vec<D> limit(Vec<D> y) const { return hn::Min(hn::Max(y, least), most); }
 };
 
-/// A curve's result is y t + first; of a precise curve y + first, added in double.
+/// A curve's result is y t + first. A precise curve's result is y + first, added in double.
 template <class D>
 struct Polynomial {
     Vec<D> y, t, first;
 };
 
-/// In segments. table(d, numbers, size).at(index): one of these numbers.
+/// Polynomials of a curve in segments. table(d, numbers, size).at(index) reads numbers[index].
 template <class D>
 class SegmentPolynomial {
   public:
@@ -556,7 +558,7 @@ class SegmentPolynomial {
           scale_(table(d, curve.scale.data(), curve.segments)),
           offset_(table(d, curve.offset.data(), curve.segments)) {}
 
-    /// @param rest  what x leaves out of the number given; null where it is that number
+    /// @param rest  the part of the input that x lacks, because it was rounded to float; null: none
     HWY_INLINE Polynomial<D> operator()(D d, Vec<D> x, const Vec<D>* rest) const {
         const auto index = segment_of(d, x);
         const auto number =
@@ -577,7 +579,7 @@ class SegmentPolynomial {
     HWY_INLINE auto segment_of(D d, Vec<D> x) const {
         const auto tag = bits_tag(d);
         if (curve_.cells == 0) {
-            // A bit of the index at a time, the highest first.
+            // A binary search finds one bit of the index at a time, the highest first.
             auto index = hn::Zero(tag);
             for (int bit = curve_.segments / 2; bit > 0; bit /= 2) {
                 const auto next = hn::Or(index, hn::Set(tag, bit));
@@ -598,7 +600,7 @@ class SegmentPolynomial {
     decltype(table(D(), nullptr, 0)) threshold_, segment_, scale_, offset_;
 };
 
-/// In rows.
+/// Polynomials of a curve in rows.
 template <class D>
 class RowPolynomial {
   public:
@@ -608,11 +610,11 @@ class RowPolynomial {
           base_(float_of(d, rows.base)),
           shift_(rows.shift),
           length_(rows.length),
-          // No cell begins with a bit of those within a cell.
+          // The last `shift` bits of the first float of each cell are 0.
           is_aligned_(restarts_.empty() &&
                       rows.base % (std::uint32_t{1} << static_cast<unsigned>(shift_)) == 0) {}
 
-    /// @param x  at most the curve's end
+    /// @param x     at most the curve's end
     /// @param rest  see SegmentPolynomial
     HWY_INLINE Polynomial<D> operator()(D d, Vec<D> x, const Vec<D>* rest) const {
         const auto tag = bits_tag(d);
@@ -629,7 +631,7 @@ class RowPolynomial {
             is_aligned_
                 ? hn::And(above, float_of(d, ~std::uint32_t{0} << static_cast<unsigned>(shift_)))
                 : hn::BitCast(d, hn::Add(hn::ShiftLeftSame(cell, shift_), base_bits));
-        // 0x7F000000 less the exponent.
+        // The bits of scale are 0x7F000000 minus the exponent bits of x0.
         const auto complement = hn::BitCast(tag, hn::AndNot(x0, float_of(d, 0x7F800000)));
         const auto scale = hn::BitCast(d, hn::Add(complement, hn::Set(tag, -0x00800000)));
         auto distance = hn::Sub(x, x0);
@@ -669,9 +671,9 @@ HWY_INLINE Vec<D> curve_value(D d, const CurveEnds<D>& ends, const P& polynomial
     return hn::IfThenElse(hn::Gt(x, ends.lo), y, ends.at_lo);  // NaN is not above
 }
 
-/// Of a precise curve.
+/// Value of a precise curve.
 /// @param wide_ends  the same ends in double
-/// @param exact      what was rounded to x; null where nothing was
+/// @param exact      the input before it was rounded to x; null: it is x
 template <class D, class DD>
 HWY_INLINE Doubles precise_curve_value(D d, const CurveEnds<D>& ends,
                                        const CurveEnds<DD>& wide_ends, const auto& polynomial,
@@ -697,62 +699,69 @@ HWY_INLINE Doubles precise_curve_value(D d, const CurveEnds<D>& ends,
 // Operations
 
 /// The operation that computes an instruction.
-HWY_INLINE Op computed_by(const Instruction& step) {
+HWY_INLINE ProgramOp computed_by(const Instruction& step) {
     const bool is_near = -kNearPower <= step.k[0] && step.k[0] <= kNearPower;
-    return step.op == Op::power_constant && !step.wide && is_near ? Op::power_near : step.op;
+    return step.op == ProgramOp::power_constant && !step.wide && is_near ? ProgramOp::power_near
+                                                                         : step.op;
 }
 
-/// In double, whatever the instruction says.
-constexpr bool is_always_wide(Op op) {
-    return op == Op::sine || op == Op::cosine || op == Op::atan2 || (op == Op::log2 && !kHasFma);
+/// True if the operation is computed in double even if its instruction is not wide.
+constexpr bool is_always_wide(ProgramOp op) {
+    return op == ProgramOp::sine || op == ProgramOp::cosine || op == ProgramOp::atan2 ||
+           (op == ProgramOp::log2 && !kHasFma);
 }
 
 /// @param x  x(i): operand i
-template <Op op, class D, class X>
-HWY_INLINE Vec<D> compute_one(D d, const Code& code, const Instruction& step, const X& x) {
-    if constexpr (op == Op::add) return hn::Add(x(0), x(1));
-    if constexpr (op == Op::subtract) return hn::Sub(x(0), x(1));
-    if constexpr (op == Op::multiply) return hn::Mul(x(0), x(1));
-    if constexpr (op == Op::divide) return hn::Div(x(0), x(1));
-    if constexpr (op == Op::multiply_add) return hn::MulAdd(x(0), x(1), x(2));
-    if constexpr (op == Op::multiply_subtract) return hn::MulSub(x(0), x(1), x(2));
-    if constexpr (op == Op::subtract_product) return hn::NegMulAdd(x(0), x(1), x(2));
-    if constexpr (op == Op::minimum) return minimum(x(0), x(1));
-    if constexpr (op == Op::maximum) return maximum(x(0), x(1));
-    if constexpr (op == Op::clamp) return minimum(maximum(x(0), x(1)), x(2));
-    if constexpr (op == Op::negate) return hn::Neg(x(0));
-    if constexpr (op == Op::absolute) return hn::Abs(x(0));
-    if constexpr (op == Op::square_root) return hn::Sqrt(x(0));
-    if constexpr (op == Op::floor) return hn::Floor(x(0));
-    if constexpr (op == Op::exp2) return exp2(d, x(0));
-    if constexpr (op == Op::log2) return log2(d, x(0), step.is_positive);
-    if constexpr (op == Op::power) return power(d, x(0), x(1));
-    if constexpr (op == Op::power_constant) return power(d, x(0), step.k[0], step.is_positive);
-    if constexpr (op == Op::power_near) return power_near(d, x(0), step.k[0], step.is_positive);
-    if constexpr (op == Op::sine) return sine(d, x(0), 0);
-    if constexpr (op == Op::cosine) return sine(d, x(0), 1);
-    if constexpr (op == Op::atan2) return atan2(d, x(0), x(1));
-    if constexpr (op == Op::less) return one_where(d, hn::Lt(x(0), x(1)));
-    if constexpr (op == Op::less_equal) return one_where(d, hn::Le(x(0), x(1)));
-    if constexpr (op == Op::equal) return one_where(d, hn::Eq(x(0), x(1)));
-    if constexpr (op == Op::select) return hn::IfThenElse(hn::Eq(x(0), hn::Zero(d)), x(2), x(1));
-    if constexpr (op == Op::select_less) return hn::IfThenElse(hn::Lt(x(0), x(1)), x(2), x(3));
-    if constexpr (op == Op::select_less_equal)
+template <ProgramOp op, class D, class X>
+HWY_INLINE Vec<D> compute_one(D d, const Program& program, const Instruction& step, const X& x) {
+    if constexpr (op == ProgramOp::add) return hn::Add(x(0), x(1));
+    if constexpr (op == ProgramOp::subtract) return hn::Sub(x(0), x(1));
+    if constexpr (op == ProgramOp::multiply) return hn::Mul(x(0), x(1));
+    if constexpr (op == ProgramOp::divide) return hn::Div(x(0), x(1));
+    if constexpr (op == ProgramOp::multiply_add) return hn::MulAdd(x(0), x(1), x(2));
+    if constexpr (op == ProgramOp::multiply_subtract) return hn::MulSub(x(0), x(1), x(2));
+    if constexpr (op == ProgramOp::subtract_product) return hn::NegMulAdd(x(0), x(1), x(2));
+    if constexpr (op == ProgramOp::minimum) return minimum(x(0), x(1));
+    if constexpr (op == ProgramOp::maximum) return maximum(x(0), x(1));
+    if constexpr (op == ProgramOp::clamp) return minimum(maximum(x(0), x(1)), x(2));
+    if constexpr (op == ProgramOp::negate) return hn::Neg(x(0));
+    if constexpr (op == ProgramOp::absolute) return hn::Abs(x(0));
+    if constexpr (op == ProgramOp::square_root) return hn::Sqrt(x(0));
+    if constexpr (op == ProgramOp::floor) return hn::Floor(x(0));
+    if constexpr (op == ProgramOp::exp2) return exp2(d, x(0));
+    if constexpr (op == ProgramOp::log2) return log2(d, x(0), step.is_positive);
+    if constexpr (op == ProgramOp::power) return power(d, x(0), x(1));
+    if constexpr (op == ProgramOp::power_constant)
+        return power(d, x(0), step.k[0], step.is_positive);
+    if constexpr (op == ProgramOp::power_near)
+        return power_near(d, x(0), step.k[0], step.is_positive);
+    if constexpr (op == ProgramOp::sine) return sine(d, x(0), 0);
+    if constexpr (op == ProgramOp::cosine) return sine(d, x(0), 1);
+    if constexpr (op == ProgramOp::atan2) return atan2(d, x(0), x(1));
+    if constexpr (op == ProgramOp::less) return one_where(d, hn::Lt(x(0), x(1)));
+    if constexpr (op == ProgramOp::less_equal) return one_where(d, hn::Le(x(0), x(1)));
+    if constexpr (op == ProgramOp::equal) return one_where(d, hn::Eq(x(0), x(1)));
+    if constexpr (op == ProgramOp::select)
+        return hn::IfThenElse(hn::Eq(x(0), hn::Zero(d)), x(2), x(1));
+    if constexpr (op == ProgramOp::select_less)
+        return hn::IfThenElse(hn::Lt(x(0), x(1)), x(2), x(3));
+    if constexpr (op == ProgramOp::select_less_equal)
         return hn::IfThenElse(hn::Le(x(0), x(1)), x(2), x(3));
-    if constexpr (op == Op::select_equal) return hn::IfThenElse(hn::Eq(x(0), x(1)), x(2), x(3));
-    if constexpr (op == Op::lookup) return lookup(d, x(0), code.tables[step.table]);
+    if constexpr (op == ProgramOp::select_equal)
+        return hn::IfThenElse(hn::Eq(x(0), x(1)), x(2), x(3));
+    if constexpr (op == ProgramOp::lookup) return lookup(d, x(0), program.tables[step.table]);
     return x(0);  // copy
 }
 
-/// What an instruction computes of the numbers of one pixel.
+/// Computes an instruction for a vector of pixels.
 /// @tparam op   computed_by(step)
-/// @param give  give(c, result): of each channel that is asked for
-template <Op op, class D, class X, class Give>
-HWY_INLINE void compute(D d, const Code& code, const Instruction& step, const X& x,
+/// @param give  give(c, result) is called for each result that is asked for
+template <ProgramOp op, class D, class X, class Give>
+HWY_INLINE void compute(D d, const Program& program, const Instruction& step, const X& x,
                         const Give& give) {
     if constexpr (!operation(op).has_channels) {
-        give(0, compute_one<op>(d, code, step, x));
-    } else if constexpr (op == Op::dot3) {
+        give(0, compute_one<op>(d, program, step, x));
+    } else if constexpr (op == ProgramOp::dot3) {
         const Vec<D> in[3] = {x(0), x(1), x(2)};
         for (std::size_t row = 0; row < 3; ++row) {
             if (!step.out[row].constant)
@@ -760,11 +769,11 @@ HWY_INLINE void compute(D d, const Code& code, const Instruction& step, const X&
         }
     } else {
         Vec<D> result[3];
-        if constexpr (op == Op::grid) {
+        if constexpr (op == ProgramOp::grid) {
             const Vec<D> in[3] = {x(0), x(1), x(2)};
-            interpolate(d, in, code.grids[step.table], result);
+            interpolate(d, in, program.grids[step.table], result);
         } else {
-            lookup_nonuniform(d, x(0), code.positioned[step.table], result);
+            lookup_nonuniform(d, x(0), program.positioned[step.table], result);
         }
         for (std::size_t c = 0; c < 3; ++c) {
             if (!step.out[c].constant) give(c, result[c]);

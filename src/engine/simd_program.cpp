@@ -12,23 +12,25 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
-/// What a pipeline's programs for the targets of one curve form share.
-struct Form {
+/// A pipeline compiled for all targets that have the same curve form, up to the allocation of
+/// registers.
+struct CompiledVariant {
     std::shared_ptr<const Tape> source;
     FloatTape tape;
     CurveCache curves;  // owns what the tape refers to
     std::vector<bool> in_double;
     std::vector<Selected> selected;
 
-    Code assemble(const Target& target, CurveIndex* curve_index = nullptr) const {
-        Code code = simd::assemble(tape, in_double, selected, target, curve_index);
-        code.source = source;
-        if (target.machine) code.machine = MachineCode::make(code);
-        return code;
+    Program assemble(const Target& target, CurveIndex* curve_index = nullptr) const {
+        Program program = simd::assemble(tape, in_double, selected, target, curve_index);
+        program.source = source;
+        if (target.machine) program.machine = MachineCode::make(program);
+        return program;
     }
 };
 
-/// The numbers of the tape with uniforms at their ends: with all at the same end, and in turns.
+/// Values of the tape's numbers with the uniforms at the ends of their ranges: all at the same end,
+/// then at alternate ends.
 std::vector<std::vector<double>> numbers_at_ends(const Tape& tape, const LiveUniforms& uniforms) {
     const auto count = std::count_if(uniforms.begin(), uniforms.end(),
                                      [](const auto& u) { return u.second.covers_ends; });
@@ -52,23 +54,24 @@ std::vector<std::vector<double>> numbers_at_ends(const Tape& tape, const LiveUni
     return result;
 }
 
-std::atomic<std::size_t> compiled_forms = 0;
+std::atomic<std::size_t> compiled_variants = 0;
 
-Form make_form(const Pipeline& pipeline, const LiveUniforms& uniforms, double max_error,
-               CurveForm curve_form) {
-    ++compiled_forms;
+CompiledVariant compile_variant(const Pipeline& pipeline, const LiveUniforms& uniforms,
+                                double max_error, CurveForm curve_form) {
+    ++compiled_variants;
     const bool has_curves = curve_form != CurveForm::none;
     const auto source = std::make_shared<const Tape>(simplify(pipeline), uniforms);
     const FloatTape plain(*source);
     Sensitivity sensitivity;
     const std::vector<std::vector<double>> ends = numbers_at_ends(*source, uniforms);
-    if (has_curves) sensitivity = measure_influence(plain.code(), plain.outputs(), ends);
+    if (has_curves) sensitivity = measure_sensitivity(plain.code(), plain.outputs(), ends);
     CurveCache curves;
     while (true) {
         FloatTape tape = plain;
-        if (has_curves) tape.fold(sensitivity, curves, curve_form);
+        if (has_curves) tape.fit_curves(sensitivity, curves, curve_form);
         Precision precision = choose_precision(tape.code(), tape.outputs(), max_error, ends);
-        // Exact enough where it stands, or compiled again or not at all.
+        // Fits curves that are too coarse once more, as precise curves. Those that are precise
+        // already get no curve.
         for (const CompiledCurve* curve : precision.too_coarse)
             reject_curve(curves, curve);
         if (!precision.too_coarse.empty()) continue;
@@ -80,39 +83,40 @@ Form make_form(const Pipeline& pipeline, const LiveUniforms& uniforms, double ma
 
 }  // namespace
 
-Code compile(const Pipeline& pipeline, double max_error, const Target& target, bool has_curves,
-             const LiveUniforms& uniforms) {
-    return make_form(pipeline, uniforms, max_error,
-                     has_curves ? target.curve_form : CurveForm::none)
+Program compile(const Pipeline& pipeline, double max_error, const Target& target, bool has_curves,
+                const LiveUniforms& uniforms) {
+    return compile_variant(pipeline, uniforms, max_error,
+                           has_curves ? target.curve_form : CurveForm::none)
         .assemble(target);
 }
 
-std::vector<Code> compile_for_all_targets(const Pipeline& pipeline, double max_error) {
-    std::map<CurveForm, Form> forms;
-    std::vector<Code> codes;
+std::vector<Program> compile_for_all_targets(const Pipeline& pipeline, double max_error) {
+    std::map<CurveForm, CompiledVariant> variants;
+    std::vector<Program> programs;
     for (const Target& target : targets()) {
-        if (!forms.contains(target.curve_form))
-            forms.emplace(target.curve_form, make_form(pipeline, {}, max_error, target.curve_form));
-        codes.push_back(forms.at(target.curve_form).assemble(target));
+        if (!variants.contains(target.curve_form))
+            variants.emplace(target.curve_form,
+                             compile_variant(pipeline, {}, max_error, target.curve_form));
+        programs.push_back(variants.at(target.curve_form).assemble(target));
     }
-    return codes;
+    return programs;
 }
 
 Steps compile_in_steps(const Pipeline& pipeline, const LiveUniforms& uniforms, double max_error,
                        const Target& target) {
-    Form form = make_form(pipeline, uniforms, max_error, target.curve_form);
+    CompiledVariant variant = compile_variant(pipeline, uniforms, max_error, target.curve_form);
     Steps steps;
-    steps.code = form.assemble(target, &steps.curve_index);
-    steps.tape = form.tape.code();
-    steps.outputs = form.tape.outputs();
-    steps.in_double = std::move(form.in_double);
-    steps.curves = std::move(form.curves);
+    steps.program = variant.assemble(target, &steps.curve_index);
+    steps.tape = variant.tape.code();
+    steps.outputs = variant.tape.outputs();
+    steps.in_double = std::move(variant.in_double);
+    steps.curves = std::move(variant.curves);
     return steps;
 }
 
-std::size_t compilations() noexcept { return compiled_forms; }
+std::size_t compilations() noexcept { return compiled_variants; }
 
-void set_uniforms(const Code& code, const std::vector<double>& values, Numbers& numbers) {
+void set_uniforms(const Program& program, const std::vector<double>& values, Numbers& numbers) {
     const auto set = [&](const std::vector<UniformPlace>& places, std::vector<ConstantVector>& to) {
         for (const UniformPlace& place : places) {
             const double value = values[place.source];
@@ -121,8 +125,8 @@ void set_uniforms(const Code& code, const std::vector<double>& values, Numbers& 
                  place.wide);
         }
     };
-    set(code.uniforms, numbers.constants);
-    if (code.machine) set(code.machine->program().uniforms, numbers.pool);
+    set(program.uniforms, numbers.constants);
+    if (program.machine) set(program.machine->program().uniforms, numbers.pool);
 }
 
 }  // namespace simd

@@ -15,7 +15,7 @@ namespace simd {
 namespace {
 
 constexpr std::int32_t kNone = VectorOperand::kNone;
-/// Bytes of a tile: stays in a first-level cache of 32 KiB.
+/// Bytes of a tile, which stays in a first-level cache of 32 KiB.
 constexpr std::size_t kTileBytes = std::size_t{24} * 1024;
 /// A cut costs one unit, and one more for each vector handed on. A part of n instructions costs
 /// (n / kLengthOfOneVector)^2: in a long part, the processor cannot begin with the next pixels
@@ -24,10 +24,10 @@ constexpr std::size_t kTileBytes = std::size_t{24} * 1024;
 constexpr double kLengthOfOneVector = 114;
 constexpr std::size_t kLongestPart = 2000;
 
-/// The element of a value.
+/// The element for value v.
 auto& at(auto& by_value, std::int32_t v) { return by_value[static_cast<std::size_t>(v)]; }
 
-/// Where the parts of a program end, and which vectors they hand on.
+/// Divides a program into parts, and finds the vectors that parts hand on to later ones.
 class Division {
   public:
     explicit Division(const VectorCode& code)
@@ -36,8 +36,8 @@ class Division {
           last_(first_.size()),
           plane_(first_.size()) {
         const std::size_t n = code.instructions.size();
-        // Before each instruction: how many vectors are alive. Masks and indices stay where they
-        // are.
+        // Number of live vectors before each instruction. Masks and indices are never handed on, so
+        // there is no cut while one is alive.
         constexpr double kNeverCut = kInfinity;
         std::vector<double> alive(n + 1);
         const auto add = [&](std::size_t from, std::size_t to, double count) {
@@ -57,7 +57,7 @@ class Division {
         }
         for (std::size_t v = 0; v < first_.size(); ++v)
             add(first_[v], last_[v], makes_mask(code.instructions[first_[v]].op) ? kNeverCut : 1);
-        // By where a part ends: the least cost up to there, and where the part begins.
+        // For each possible end of a part: the least cost up to it, and the start of that part.
         std::vector<double> cost(n + 1, kInfinity);
         std::vector<std::size_t> begin(n + 1);
         cost[0] = 0;
@@ -77,7 +77,7 @@ class Division {
         }
     }
 
-    /// Planes of the tile: a vector of each block of pixels.
+    /// Number of planes in a tile. A plane holds a vector for each block of pixels.
     [[nodiscard]] std::size_t planes() const { return planes_; }
 
     [[nodiscard]] std::vector<VectorCode> parts(std::size_t plane_bytes) const {
@@ -85,7 +85,7 @@ class Division {
         std::size_t begin = 0;
         for (const std::size_t end : ends_) {
             VectorCode part;
-            std::map<std::int32_t, std::int32_t> number;  // of the values that it knows
+            std::map<std::int32_t, std::int32_t> number;  // the part's own numbers of its values
             const auto offset_of = [&](std::int32_t v) {
                 return static_cast<std::uint32_t>(at(plane_, v) * plane_bytes);
             };
@@ -125,65 +125,67 @@ class Division {
     }
 
     const VectorCode& code_;
-    std::vector<std::size_t> first_, last_;  // that make and read each value
+    std::vector<std::size_t> first_, last_;  // instructions that make a value and read it last
     std::vector<std::size_t> ends_;
     std::vector<std::size_t> plane_;  // of each value that is handed on
     std::size_t planes_ = 0;
 };
 
-/// One value of all pixels of a block: a vector of floats, or two of doubles, or both.
+/// A value for all pixels of a block: a vector of floats, two vectors of doubles, or both.
 struct Lanes {
     VF narrow;
     Doubles wide;
 };
 
-/// Writes the program with the interpreter's registers in the processor's.
+/// Translates a program. Values of vector instructions replace the interpreter's registers.
 class Translator {
   public:
-    Translator(const Code& code, Pool& pool) : code_(code), pool_(pool), writer_(pool) {}
+    Translator(const Program& program, Pool& pool)
+        : program_(program), pool_(pool), writer_(pool) {}
 
     VectorCode write(PixelLayout layout) {
         read_inputs(layout);
         static const auto writes = all_writes(std::make_index_sequence<std::size(kOperations)>());
-        for (const Instruction& step : code_.instructions)
+        for (const Instruction& step : program_.instructions)
             (this->*writes[static_cast<std::size_t>(computed_by(step))])(step);
         write_outputs(layout);
         return writer_.take();
     }
 
   private:
-    /// Curves over the light that there is take every number, and NaN as black, by themselves.
+    /// True if only curves read the input, and their ranges are within [0, kLargestInput]. Curves
+    /// limit every number to their range, and give black for NaN.
     [[nodiscard]] bool is_read_by_curves_alone(std::uint32_t input) const {
-        for (const Instruction& step : code_.instructions) {
+        for (const Instruction& step : program_.instructions) {
             for (const Operand& in : step.in) {
                 if (in.constant || in.offset != input) continue;
-                if (step.op != Op::curve) return false;
-                const CompiledCurve& curve = code_.curves[step.table];
+                if (step.op != ProgramOp::curve) return false;
+                const CompiledCurve& curve = program_.curves[step.table];
                 if (curve.lo < 0 || curve.hi > kLargestInput) return false;
             }
             for (const Operand& out : step.out) {
                 if (!out.constant && out.offset == input) return true;
             }
         }
-        return std::none_of(code_.output.begin(), code_.output.end(), [&](const Operand& output) {
-            return !output.constant && output.offset == input;
-        });
+        return std::none_of(
+            program_.output.begin(), program_.output.end(),
+            [&](const Operand& output) { return !output.constant && output.offset == input; });
     }
 
     void read_inputs(PixelLayout layout) {
         std::array<VectorOperand, 3> given;
         if (layout == PixelLayout::rgb)
-            given = code_.is_one_function ? writer_.load_floats() : writer_.load_rgb();
+            given = program_.is_one_function ? writer_.load_floats() : writer_.load_rgb();
         if (layout == PixelLayout::rgba) {
             const std::array<VectorOperand, 4> rgba = writer_.load_rgba();
             std::copy_n(rgba.begin(), 3, given.begin());
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            if (!code_.reads_input[c]) continue;
+            if (!program_.reads_input[c]) continue;
             const VF x = {&writer_, given[c]};
-            const std::uint32_t at = code_.input_offset[c];
+            const std::uint32_t at = program_.input_offset[c];
             lanes_[at].narrow = is_read_by_curves_alone(at) ? x
-                                : code_.limits_input        ? sanitized(float_tag(), x)
+                                : program_.limits_input     ? sanitized(float_tag(), x)
                                                             : without_nan(float_tag(), x);
         }
     }
@@ -191,14 +193,14 @@ class Translator {
     void write_outputs(PixelLayout layout) {
         std::array<VectorOperand, 3> result;
         for (std::size_t c = 0; c < 3; ++c)
-            result[c] = in(code_.output[c], float_tag()).operand;
+            result[c] = in(program_.output[c], float_tag()).operand;
         if (layout == PixelLayout::rgba) return writer_.store_rgba(result);
-        code_.is_one_function ? writer_.store_floats(result) : writer_.store_rgb(result);
+        program_.is_one_function ? writer_.store_floats(result) : writer_.store_rgb(result);
     }
 
     [[nodiscard]] hn::Tag<float> float_tag() { return {&writer_}; }
 
-    /// Results: kept as they are computed, or as what the value is.
+    /// Sets a result. A double result is rounded if the value is kept in float.
     void set(const Operand& out, VF x) { lanes_[out.offset] = {x, {}}; }
     void set(const Operand& out, const Doubles& x) {
         if (out.wide) {
@@ -208,20 +210,20 @@ class Translator {
         }
     }
 
-    /// A constant or a uniform.
+    /// A vector filled with a constant or a uniform.
     template <class T>
     hn::Vector<T> number(const Operand& source, hn::Tag<T> d) {
         const unsigned char* const bytes =
-            code_.numbers.constants[source.offset / kVectorBytes].bytes.data();
+            program_.numbers.constants[source.offset / kVectorBytes].bytes.data();
         double value = 0;
         if (source.wide) {
             std::memcpy(&value, bytes, sizeof value);
         } else {
             float narrow = 0;
             std::memcpy(&narrow, bytes, sizeof narrow);
-            value = static_cast<double>(narrow);  // promoted here, not there
+            value = static_cast<double>(narrow);  // promoted once, not for each pixel
         }
-        for (const UniformPlace& uniform : code_.uniforms) {
+        for (const UniformPlace& uniform : program_.uniforms) {
             if (uniform.offset != source.offset) continue;
             constexpr bool kIsWide = hn::kIsWide<T>;
             return {d.writer,
@@ -230,7 +232,7 @@ class Translator {
         return simd::set(d, value);
     }
 
-    /// Operands as vectors of floats, or of doubles of one half.
+    /// An operand as a vector of floats, or one half of it as a vector of doubles.
     VF in(const Operand& operand, hn::Tag<float> d) {
         if (operand.constant) return number(operand, d);
         Lanes& x = lanes_.at(operand.offset);
@@ -245,11 +247,11 @@ class Translator {
         return result;
     }
 
-    template <Op op>
+    template <ProgramOp op>
     void write_op(const Instruction& step) {
         const hn::Tag<float> d = float_tag();
-        if constexpr (op == Op::curve) {
-            const CompiledCurve& curve = code_.curves[step.table];
+        if constexpr (op == ProgramOp::curve) {
+            const CompiledCurve& curve = program_.curves[step.table];
             if (curve.rows)
                 return write_curve(step, curve, RowPolynomial<hn::Tag<float>>(d, *curve.rows));
             return write_curve(step, curve, SegmentPolynomial<hn::Tag<float>>(d, curve));
@@ -260,13 +262,13 @@ class Translator {
         if (!step.wide && !is_always_wide(op)) {
             const auto x = [&](int i) { return in(operand(i), d); };
             const auto give = [&](std::size_t c, VF result) { set(step.out[c], result); };
-            return compute<op>(d, code_, step, x, give);
+            return compute<op>(d, program_, step, x, give);
         }
         Doubles results[3];
         for (int half = 0; half < kHalves; ++half) {
             const auto x = [&](int i) { return in(operand(i), half); };
             const auto give = [&](std::size_t c, VD result) { results[c].half[half] = result; };
-            compute<op>(double_tag(d), code_, step, x, give);
+            compute<op>(double_tag(d), program_, step, x, give);
         }
         for (std::size_t c = 0; c < 3; ++c) {
             if (results[c].half[0].writer) set(step.out[c], results[c]);
@@ -275,7 +277,7 @@ class Translator {
     using Write = void (Translator::*)(const Instruction&);
     template <std::size_t... kOp>
     static std::array<Write, sizeof...(kOp)> all_writes(std::index_sequence<kOp...> /*all*/) {
-        return {&Translator::write_op<static_cast<Op>(kOp)>...};
+        return {&Translator::write_op<static_cast<ProgramOp>(kOp)>...};
     }
 
     template <class P>
@@ -291,7 +293,7 @@ class Translator {
                                              given, x.wide ? &exact : nullptr));
     }
 
-    const Code& code_;
+    const Program& program_;
     Pool& pool_;
     Writer writer_;
     std::map<std::uint32_t, Lanes> lanes_;  // by offset in the interpreter's tile
@@ -319,24 +321,24 @@ VectorCode interleaved(const VectorCode& code, int blocks) {
     return result;
 }
 
-std::optional<VectorProgram> translate(const Code& code) {
-    const VectorMachine& machine = *code.target->machine;
+std::optional<VectorProgram> translate(const Program& program) {
+    const VectorMachine& machine = *program.target->machine;
     Pool pool(machine.has_avx512 ? 0 : static_cast<std::size_t>(machine.bytes()));
     std::vector<VectorCode> whole;
     for (const PixelLayout layout : {PixelLayout::rgb, PixelLayout::rgba})
-        whole.push_back(Translator(code, pool).write(layout));
+        whole.push_back(Translator(program, pool).write(layout));
     const std::array division = {Division(whole[0]), Division(whole[1])};
     const std::size_t pixel_bytes =
         sizeof(float) * std::max({division[0].planes(), division[1].planes(), std::size_t{1}});
-    VectorProgram program;
-    program.tile = std::clamp(kTileBytes / pixel_bytes / kLaneMultiple * kLaneMultiple,
-                              kLaneMultiple, kMaxTile);
-    if (program.tile * pixel_bytes > kRegisterFileBytes) return std::nullopt;
+    VectorProgram result;
+    result.tile = std::clamp(kTileBytes / pixel_bytes / kLaneMultiple * kLaneMultiple,
+                             kLaneMultiple, kMaxTile);
+    if (result.tile * pixel_bytes > kRegisterFileBytes) return std::nullopt;
     for (std::size_t layout = 0; layout < division.size(); ++layout)
-        program.parts[layout] = division[layout].parts(program.tile * sizeof(float));
-    program.pool = pool.take();
-    program.uniforms = pool.take_uniforms();
-    return program;
+        result.parts[layout] = division[layout].parts(result.tile * sizeof(float));
+    result.pool = pool.take();
+    result.uniforms = pool.take_uniforms();
+    return result;
 }
 
 }  // namespace simd

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A float program (program.h) as instructions over vectors (vector_ir.h).
+// Translation of a program (program.h) to instructions over vectors (vector_ir.h).
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// The same for `blocks` blocks of pixels at a time, one instruction of each after the other: a
-/// processor that waits for a result has the next block's instruction to begin with.
+/// The code for `blocks` blocks of pixels at a time, with the instructions of the blocks in turns.
+/// While one block waits for a result, the processor runs an instruction of the next.
 [[nodiscard]] VectorCode interleaved(const VectorCode& code, int blocks);
 
-/// Nothing where more values go from part to part than a tile of 16 pixels has room for.
-/// @param code  for a target with machine code; owns the tables that the result refers to
-[[nodiscard]] std::optional<VectorProgram> translate(const Code& code);
+/// @return  nullopt if the values that live between parts do not fit a tile of 16 pixels
+/// @param program  for a target with machine code; owns the tables that the result refers to
+[[nodiscard]] std::optional<VectorProgram> translate(const Program& program);
 
 }  // namespace simd
 TONEWRIGHT_NAMESPACE_END

@@ -13,7 +13,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// What a vector instruction does. Doubles are half as many to a vector as floats.
+/// Opcode of a vector instruction. A vector has half as many doubles as floats.
 enum class VectorOp : std::uint8_t {
     add,
     subtract,
@@ -22,20 +22,20 @@ enum class VectorOp : std::uint8_t {
     multiply_add,       // a*b + c
     multiply_subtract,  // a*b - c
     subtract_product,   // c - a*b
-    minimum,            // a < b ? a : b, as the processor has it
+    minimum,            // a < b ? a : b, the processor's instruction
     maximum,            // a > b ? a : b
     square_root,
     bit_and,
     bit_or,
     bit_xor,
     bit_and_not,  // ~a & b
-    round,        // to the nearest whole number
-    floor,        //
-    // Between floats and pairs of vectors of doubles
+    round,        // to the nearest integer
+    floor,        // to the next integer below
+    // Conversions between a vector of floats and two vectors of doubles
     promote_low,
     promote_high,
     demote,  // (low, high) -> floats
-    // Masks; of AVX2 all bits of a vector's element
+    // Masks. With AVX2, a mask is a vector whose elements have all bits set or none
     equal,
     less,
     less_equal,
@@ -44,36 +44,37 @@ enum class VectorOp : std::uint8_t {
     is_minus,  // the sign bit of a, for a blend
     blend,     // mask ? a : b
     zero_unless,
-    // Whole numbers; of 64 bits where wide
-    shift_right,  // of the bits of a, by `immediate`; with the sign unless wide
+    // Integers, of 64 bits if wide
+    shift_right,  // a >> `immediate`, with the sign unless wide
     shift_left,
     integer_add,
     integer_subtract,
-    to_index,  // from floats, or from doubles to half a vector
-    to_float,  // from whole numbers
+    to_index,  // from floats; from doubles, the result is half a vector
+    to_float,  // from 32-bit integers
     // Tables
-    permute_16,   // the element of 16 floats at `address` that a says; AVX-512
-    permute_32,   // AVX-512
-    gather,       // of the numbers at `address`, that of index a
-    spill_index,  // the whole numbers a, on the stack, number `immediate`
-    rows,         // four floats each for a quarter of the pixels, at `address` + the floats that
-           // spill_index kept: `immediate` says which index, and times 4, which pixel of each four
+    permute_16,   // element a of the 16 floats at `address`; AVX-512
+    permute_32,   // element a of the 32 floats at `address`; AVX-512
+    gather,       // number a of those at `address`
+    spill_index,  // stores the integers a on the stack, in index slot `immediate`
+    /// Loads four adjacent floats at `address` for one lane in each four. `immediate` % 4 is the
+    /// slot of their indices, and `immediate` / 4 the lane.
+    rows,
     // Memory
     load_plane,
     store_plane,
-    load_pixels,   // the vector number `immediate` of the block's pixels
-    store_pixels,  //
-    store_colors,  // only the first three of each four floats
+    load_pixels,   // vector `immediate` of the block's pixels
+    store_pixels,  // to such a vector
+    store_colors,  // store_pixels without the fourth float of each pixel
     load_thirds,   // every third group of four floats, beginning with group `immediate`
-    store_thirds,  //
-    shuffle_4,     // two floats of each four of a, two of b
+    store_thirds,  // to such groups
+    shuffle_4,     // two floats of each four of a, then two of b
 };
 
 /// A value in a register, or a number in the pool.
 struct VectorOperand {
     static constexpr std::int32_t kNone = -1;
     std::int32_t value = kNone;
-    std::int32_t pool = kNone;  // in bytes
+    std::int32_t pool = kNone;  // offset in bytes
 
     [[nodiscard]] bool is_value() const { return value != kNone; }
     [[nodiscard]] bool is_constant() const { return pool != kNone; }
@@ -83,10 +84,10 @@ struct VectorInstruction {
     VectorOp op = VectorOp::add;
     bool wide = false;  // doubles
     std::uint8_t immediate = 0;
-    std::uint8_t block = 0;                      // of those that one turn of the loop computes
-    std::uint32_t offset = 0;                    // in the tile: bytes
-    const void* address = nullptr;               // of that table
-    std::int32_t result = VectorOperand::kNone;  // a mask, of a comparison
+    std::uint8_t block = 0;                      // number of the block in a turn of the loop
+    std::uint32_t offset = 0;                    // in the tile, in bytes
+    const void* address = nullptr;               // of the table
+    std::int32_t result = VectorOperand::kNone;  // a mask if makes_mask(op)
     std::int32_t mask = VectorOperand::kNone;
     std::array<VectorOperand, 3> in{};
 };
@@ -95,23 +96,23 @@ struct VectorInstruction {
     return op >= VectorOp::equal && op <= VectorOp::is_minus;
 }
 
-/// Floats of a pixel in memory, for the code that reads or writes them.
+/// Floats of a pixel in the memory that the code reads and writes.
 enum class PixelLayout : std::uint8_t {
     rgb,
     rgba,  // the fourth channel keeps its value
 };
 
-/// A program, or a part of it.
+/// Straight-line code: a program or a part of it.
 struct VectorCode {
     std::vector<VectorInstruction> instructions;
     std::int32_t value_count = 0;
 };
 
-/// The program as such parts, which run one after the other over a tile.
+/// A program as parts, which run one after the other over a tile.
 struct VectorProgram {
-    /// By the layout of the pixels.
+    /// Parts for each PixelLayout.
     std::array<std::vector<VectorCode>, 2> parts;
-    std::vector<unsigned char> pool;     // constants; to be aligned to 64
+    std::vector<unsigned char> pool;     // constants; must be aligned to 64 bytes
     std::vector<UniformPlace> uniforms;  // in the pool
     std::size_t tile = 0;                // in pixels
 };

@@ -16,12 +16,12 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// Constants, each once.
+/// A pool of constants. It holds each of them once.
 class Pool {
   public:
     /// @param copies  bytes that a number fills with copies of itself; 0 for one copy
     explicit Pool(std::size_t copies) : copies_(copies) {}
-    /// @param value  of 32 or 64 bits
+    /// @param value  a number of 32 or 64 bits
     template <class T>
     VectorOperand bits(T value) {
         const std::vector<T> copies(std::max<std::size_t>(copies_ / sizeof value, 1), value);
@@ -34,8 +34,8 @@ class Pool {
         }
         return {VectorOperand::kNone, it->second};
     }
-    /// A number that may become another.
-    /// @param is_rounded  to float before it is taken as double
+    /// A pool constant that with_uniforms() can replace.
+    /// @param is_rounded  the value is rounded to float before it is stored as double
     VectorOperand uniform(std::uint32_t source, double value, bool wide, bool is_rounded) {
         for (const UniformPlace& place : uniforms_) {
             if (place.source == source && place.wide == wide && place.is_rounded == is_rounded)
@@ -60,13 +60,13 @@ class Pool {
     std::size_t copies_;
     std::vector<unsigned char> bytes_;
     std::vector<UniformPlace> uniforms_;
-    std::map<std::string, std::int32_t> offset_;  // by the bytes themselves
+    std::map<std::string, std::int32_t> offset_;  // by the bytes of the number and its copies
 };
 
 /// Writes the vector instructions of a program.
 class Writer {
   public:
-    using Number = VectorOperand;  // of a vector: a value or a constant
+    using Number = VectorOperand;  // a vector: a value or a constant
 
     explicit Writer(Pool& pool) : pool_(pool) {}
 
@@ -80,15 +80,15 @@ class Writer {
     }
     void emit_store(const VectorInstruction& step) { code_.instructions.push_back(step); }
 
-    // --- numbers that lie in rows ------------------------------------------------------------
+    // --- rows of tables ----------------------------------------------------------------------
 
-    /// Keeps whole numbers, by which rows() finds its numbers.
+    /// Stores the integers `place` in an index slot, for rows().
     void spill_index(int number, Number place) {
         emit_store({.op = VectorOp::spill_index,
                     .immediate = static_cast<std::uint8_t>(number),
                     .in = {place}});
     }
-    /// A number for spill_index() that the rows before the last do not need any more.
+    /// An index slot for spill_index(). There are four, which are used in turn.
     int next_index() {
         spilled_ = (spilled_ + 1) % 4;
         return spilled_;
@@ -105,14 +105,14 @@ class Writer {
         return emit({.op = o, .immediate = static_cast<std::uint8_t>(number)});
     }
     Number load_pixels(int number) { return load(VectorOp::load_pixels, number); }
-    /// RGB as it lies in memory, for what computes the same of each channel.
+    /// RGB in the order of memory, for a program that computes the same function of each channel.
     std::array<Number, 3> load_floats() { return {load_pixels(0), load_pixels(1), load_pixels(2)}; }
     void store_floats(const std::array<Number, 3>& floats) {
         for (std::size_t i = 0; i < 3; ++i)
             store(VectorOp::store_pixels, static_cast<int>(i), floats[i]);
     }
     std::array<Number, 3> load_rgb() {
-        // Each four floats of a vector are of the same four pixels.
+        // The k-th four floats of each of these vectors belong to the same four pixels.
         const std::array<Number, 3> v = {load(VectorOp::load_thirds, 0),
                                          load(VectorOp::load_thirds, 1),
                                          load(VectorOp::load_thirds, 2)};
@@ -131,7 +131,7 @@ class Writer {
     static constexpr int shuffle_code(int i, int j, int k, int l) {
         return i + 4 * j + 16 * k + 64 * l;
     }
-    /// Of four vectors, the first floats of each four, the second and so on.
+    /// Transposes groups of four floats: the k-th result has float k of each group of each vector.
     std::array<Number, 4> columns(const std::array<Number, 4>& v) {
         const Number first01 = shuffle_4(v[0], v[1], 0x44);
         const Number first23 = shuffle_4(v[2], v[3], 0x44);
@@ -140,7 +140,7 @@ class Writer {
         return {shuffle_4(first01, first23, 0x88), shuffle_4(first01, first23, 0xDD),
                 shuffle_4(last01, last23, 0x88), shuffle_4(last01, last23, 0xDD)};
     }
-    /// The pixels come in another order, and store_rgba() restores it.
+    /// Loads pixels in another order, which store_rgba() undoes.
     std::array<Number, 4> load_rgba() {
         return columns({load_pixels(0), load_pixels(1), load_pixels(2), load_pixels(3)});
     }
@@ -168,15 +168,16 @@ class Writer {
   private:
     Pool& pool_;
     VectorCode code_;
-    int spilled_ = 0;  // of spill_index, the last one
+    int spilled_ = 0;  // the index slot used last
 };
 
-/// Highway's functions, as far as simd_math-inl.h calls them, with vectors that are values of
-/// instructions: what they would compute, they write. Highway's documentation is theirs.
+/// The functions of Highway that simd_math-inl.h calls. Their vectors are values of instructions:
+/// instead of computing a result, each function writes the instruction that does. Highway documents
+/// them.
 namespace recorded {
 // NOLINTBEGIN(readability-identifier-naming): the names are Highway's.
 
-/// Of floats, doubles, or whole numbers of as many bits.
+/// A tag for floats, doubles, or integers of as many bits.
 template <class T>
 struct Tag {
     using Type = T;
@@ -208,7 +209,7 @@ Vector<T> Zero(Tag<T> d) {
     return Set(d, 0);
 }
 
-/// One instruction; another one for whole numbers.
+/// A function that writes an instruction: integer_op for integers, op for other numbers.
 template <VectorOp op, VectorOp integer_op = op>
 struct Operation {
     template <class T, std::same_as<Vector<T>>... V>
@@ -330,7 +331,7 @@ Vector<T> IfThenElse(Mask<T> mask, Vector<T> yes, Vector<T> no) {
 }  // namespace recorded
 
 // ---------------------------------------------------------------------------------------------
-// What else simd_math-inl.h asks for
+// Other names that simd_math-inl.h needs
 
 namespace hn = recorded;
 
@@ -380,7 +381,7 @@ hn::Vector<T> gather(hn::Tag<T> d, std::span<const T> samples, std::size_t first
                                       .in = {place.operand}})};
 }
 
-/// Numbers that permutes of AVX-512 pick from.
+/// A table of up to 64 numbers, read by permutes of AVX-512.
 struct PermutedTable {
     const float* numbers;
     int size;
@@ -400,7 +401,7 @@ inline PermutedTable table(hn::Tag<float> /*d*/, const float* numbers, int size)
     return {numbers, size};
 }
 
-/// See GatheredRows: loads of rows.
+/// GatheredRows with loads of whole rows.
 class Rows {
   public:
     Rows(std::span<const float> numbers, VI place, int length)
@@ -411,7 +412,7 @@ class Rows {
         writer_.spill_index(index_, place.operand);
     }
     void columns(std::size_t group, VF* result) {
-        // Both groups are loaded at once: each index is read once.
+        // Loads both groups at once, so that each index is read once.
         if (!is_loaded_) load();
         const std::array<VectorOperand, 4> columns = writer_.columns(rows_[group]);
         for (std::size_t i = 0; i < 4; ++i)

@@ -11,7 +11,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The functions of one instruction set.
 struct HalfKernels {
-    const char* target = nullptr;  // its name
+    const char* name = nullptr;
     bool (*to_float)(const void* from, float* to, std::size_t count) noexcept = nullptr;
     bool (*to_half)(const float* from, void* to, std::size_t count) noexcept = nullptr;
 };

@@ -82,7 +82,7 @@ struct SpanLight {
     Product lit;         // of luminances above 0
     Product with_delta;  // of luminances and delta
 };
-/// How colors are metered.
+/// Conversion of colors to metered luminances.
 struct Weighing {
     const Matrix3* to_rec709;  // null: colors are in Rec.709
     double delta;              // added to luminances inside the logarithm, [1e-12, 1]
@@ -102,7 +102,7 @@ struct Weighing {
 
 /// The functions of one instruction set.
 struct Kernels {
-    const char* target = nullptr;  // its name
+    const char* name = nullptr;
     void (*split)(const float*, int, std::size_t, Planes&) noexcept = nullptr;
     Kinds (*kinds)(Planes&, std::size_t, bool) noexcept = nullptr;
     bool (*are_plain)(const float*, int, std::size_t, bool) noexcept = nullptr;

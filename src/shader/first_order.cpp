@@ -11,7 +11,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Result of measure_influence() for infinite derivatives.
+/// Result of measure_sensitivity() for infinite derivatives.
 constexpr double kPole = 1e12;
 
 }  // namespace
@@ -19,7 +19,7 @@ constexpr double kPole = 1e12;
 FirstOrderError first_order_error(const std::array<Expr, 3>& outputs) {
     const Tape tape(outputs);
     const std::vector<TapeInstruction>& code = tape.code();
-    const Sensitivity probes = measure_influence(code, tape.outputs());
+    const Sensitivity probes = measure_sensitivity(code, tape.outputs());
     FirstOrderError worst;
     for (std::size_t p = 0; p < probes.value.size(); ++p) {
         const std::vector<double>& value = probes.value[p];

@@ -53,7 +53,7 @@ Expr fitted(const Expr& f) {
     std::vector<TapeInstruction> code = tape.code();
     std::array<std::uint32_t, 3> outputs = tape.outputs();
     CurveCache cache;
-    fit_curves(code, outputs, measure_influence(code, outputs), cache, CurveForm::segments);
+    fit_curves(code, outputs, measure_sensitivity(code, outputs), cache, CurveForm::segments);
     std::map<const Table*, std::shared_ptr<const Table>> tables;
     for (const Expr& e : nodes_of(std::span(&f, 1))) {
         if (e.op() == ExprOp::grid) return f;

@@ -180,7 +180,7 @@ TEST_P(CompiledCurveForm, DoesNotPretend) {
     EXPECT_FALSE(compiled([](double x) { return x < 1000 ? 0 : std::fmod(x, 1); })) << "noise";
 }
 
-/// What a kernel and operator() do has to be the same arithmetic.
+/// Kernels and operator() have the same arithmetic.
 TEST_P(CompiledCurveForm, KernelsComputeWhatItSays) {
     std::vector<const simd::Target*> targets;
     for (const simd::Target& target : simd::targets()) {
@@ -192,17 +192,17 @@ TEST_P(CompiledCurveForm, KernelsComputeWhatItSays) {
             const auto curve = compile_curve(each(f.f), f.range, f.kinks,
                                              tolerance_of(f, is_precise), GetParam(), is_precise);
             if (!curve) continue;
-            simd::Code code;
-            code.tile = simd::kMaxTile;
-            code.curves.push_back(*curve);
-            code.reads_input = {true, false, false};
+            simd::Program program;
+            program.tile = simd::kMaxTile;
+            program.curves.push_back(*curve);
+            program.reads_input = {true, false, false};
             simd::Instruction step;
-            step.op = simd::Op::curve;
+            step.op = simd::ProgramOp::curve;
             step.wide = is_precise;
             step.in[0] = {.offset = 0};
             step.out[0] = {.offset = sizeof(float) * simd::kMaxTile};
-            code.instructions.push_back(step);
-            code.output = {step.out[0], step.out[0], step.out[0]};
+            program.instructions.push_back(step);
+            program.output = {step.out[0], step.out[0], step.out[0]};
             // Pixels are limited to half floats' numbers before anything else.
             std::vector<float> x;
             for (const float place : places(f)) {
@@ -210,52 +210,53 @@ TEST_P(CompiledCurveForm, KernelsComputeWhatItSays) {
             }
             std::vector<float> y(x.size()), rest(x.size());
             for (const simd::Target* target : targets) {
-                code.target = target;
-                simd::run(code, {x.data(), x.data(), x.data()}, 1,
+                program.target = target;
+                simd::run(program, {x.data(), x.data(), x.data()}, 1,
                           {y.data(), rest.data(), rest.data()}, 1, x.size());
                 for (std::size_t i = 0; i < x.size(); ++i) {
                     ASSERT_EQ(y[i], static_cast<float>((*curve)(static_cast<double>(x[i]))))
-                        << f.name << " of " << x[i] << " on " << target->target;
+                        << f.name << " of " << x[i] << " on " << target->name;
                 }
             }
         }
     }
 }
 
-/// What a precise curve gives up to its end is a double: here 0.1, less the float next to it.
+/// The result of a precise curve up to its lower end is a double: here 0.1, less the float next to
+/// it.
 TEST_P(CompiledCurveForm, PreciseOnesBeginWithADouble) {
     const auto f = [](double x) { return std::pow(std::fmax(x, 0), 1.5) + 0.1; };
     const CurveTolerance tolerance = tolerance_of({"", f, {-64, 64}, {}, 1e-12}, true);
     const auto curve = compile_curve(each(f), {-64, 64}, {}, tolerance, GetParam(), true);
     ASSERT_TRUE(curve);
     constexpr std::uint32_t kPlane = sizeof(float) * simd::kMaxTile;
-    simd::Code code;
-    code.tile = simd::kMaxTile;
-    code.curves.push_back(*curve);
-    code.reads_input = {true, true, false};
-    code.input_offset = {0, kPlane, 0};
+    simd::Program program;
+    program.tile = simd::kMaxTile;
+    program.curves.push_back(*curve);
+    program.reads_input = {true, true, false};
+    program.input_offset = {0, kPlane, 0};
     simd::Instruction step;
-    step.op = simd::Op::curve;
+    step.op = simd::ProgramOp::curve;
     step.wide = true;
     step.out[0] = {.offset = 2 * kPlane, .wide = true};
     step.in[0] = {.offset = 0};
-    code.instructions.push_back(step);
-    step.op = simd::Op::subtract;
+    program.instructions.push_back(step);
+    step.op = simd::ProgramOp::subtract;
     step.in[0] = step.out[0];
     step.in[1] = {.offset = kPlane};
     step.out[0] = {.offset = 0};
-    code.instructions.push_back(step);
-    code.output = {step.out[0], step.out[0], step.out[0]};
+    program.instructions.push_back(step);
+    program.output = {step.out[0], step.out[0], step.out[0]};
     const std::vector<float> x = {0.0F, -1.0F, -0.0F, std::nanf("")};
     const std::vector<float> subtracted(x.size(), 0.1F);
     std::vector<float> y(x.size()), others(x.size());
     for (const simd::Target& target : simd::targets()) {
         if (target.curve_form != GetParam()) continue;
-        code.target = &target;
-        simd::run(code, {x.data(), subtracted.data(), x.data()}, 1,
+        program.target = &target;
+        simd::run(program, {x.data(), subtracted.data(), x.data()}, 1,
                   {y.data(), others.data(), others.data()}, 1, x.size());
         for (std::size_t i = 0; i < x.size(); ++i)
-            EXPECT_FLOAT_EQ(y[i], -1.4901161e-9F) << x[i] << " on " << target.target;
+            EXPECT_FLOAT_EQ(y[i], -1.4901161e-9F) << x[i] << " on " << target.name;
     }
 }
 
@@ -267,12 +268,12 @@ TEST(CompiledCurve, AWholeChannelIsOneInstruction) {
             return simd::compile(build_view(view), kSimdError, target);
         };
         for (const char* op : {"hable", "reinhard", "uchimura"}) {
-            const simd::Code code = compiled(op);
-            EXPECT_EQ(code.instructions.size(), 3U) << op << " on " << target.target;
+            const simd::Program program = compiled(op);
+            EXPECT_EQ(program.instructions.size(), 3U) << op << " on " << target.name;
         }
         // Inset, curve, outset to the display's primaries, encoding.
-        const simd::Code code = compiled("agx_sobotka");
-        EXPECT_LE(code.instructions.size(), 8U) << target.target;
+        const simd::Program program = compiled("agx_sobotka");
+        EXPECT_LE(program.instructions.size(), 8U) << target.name;
     }
 }
 

@@ -26,11 +26,11 @@ Expr costly(const Expr& x) {
 struct FittedCode {
     explicit FittedCode(const std::array<Expr, 3>& f) : tape(f) { refit(); }
 
-    /// As the compiler does it again, after it has rejected curves.
+    /// Fits again, like the compiler after it has rejected curves.
     void refit() {
         code = tape.code();
         outputs = tape.outputs();
-        fit_curves(code, outputs, measure_influence(code, outputs), cache, CurveForm::segments);
+        fit_curves(code, outputs, measure_sensitivity(code, outputs), cache, CurveForm::segments);
     }
     [[nodiscard]] std::vector<const CompiledCurve*> curves() const {
         std::vector<const CompiledCurve*> all;
@@ -90,7 +90,7 @@ TEST(CurveFitting, ACurveEndsWhereChannelsMeet) {
     ASSERT_EQ(product.op, ExprOp::multiply);
     EXPECT_NE(fitted.code[product.a].curve, nullptr);
     EXPECT_NE(fitted.code[product.b].curve, nullptr);
-    // What is computed of the product is a function of one value again.
+    // The function of the product is a function of one value again.
     const FittedCode root({costly(Expr::input(0) * Expr::input(1)), 0, 0});
     ASSERT_EQ(root.curves().size(), 1U);
     EXPECT_EQ(root.code[root.code[root.outputs[0]].a].op, ExprOp::multiply);

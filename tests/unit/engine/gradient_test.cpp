@@ -20,7 +20,7 @@ struct Evaluated {
     Matrix3 slope{};
 };
 
-/// Of many colors, which cuts tiles at other places than one by one.
+/// Evaluates many colors at once, which cuts tiles at other places than one by one.
 std::vector<Evaluated> evaluate_all(const Pipeline& pipeline, const std::vector<Vector3>& colors) {
     const std::size_t n = colors.size();
     std::array<std::vector<double>, 3> planes;

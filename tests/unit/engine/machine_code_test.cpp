@@ -43,14 +43,14 @@ class MachineCode : public testing::TestWithParam<const char*> {
     void SetUp() override {
         if (!simd::MachineCode::is_built_in()) GTEST_SKIP() << "built without xbyak";
         for (const simd::Target& target : simd::targets()) {
-            if (target.target == std::string(GetParam())) target_ = &target;
+            if (target.name == std::string(GetParam())) target_ = &target;
         }
         if (!target_) GTEST_SKIP() << "this processor has no " << GetParam();
         ASSERT_TRUE(target_->machine);
     }
-    [[nodiscard]] simd::Code compile(const Pipeline& pipeline, double max_error = kSimdError,
-                                     bool has_curves = true,
-                                     const LiveUniforms& uniforms = {}) const {
+    [[nodiscard]] simd::Program compile(const Pipeline& pipeline, double max_error = kSimdError,
+                                        bool has_curves = true,
+                                        const LiveUniforms& uniforms = {}) const {
         return simd::compile(pipeline, max_error, *target_, has_curves, uniforms);
     }
 
@@ -76,24 +76,24 @@ std::vector<float> floats(std::size_t count) {
 }
 
 /// Pixels `stride` floats apart; planes where it is 1. What lies around them stays as it is.
-std::vector<float> run(const simd::Code& code, const std::vector<float>& in, std::ptrdiff_t stride,
-                       std::size_t count) {
+std::vector<float> run(const simd::Program& program, const std::vector<float>& in,
+                       std::ptrdiff_t stride, std::size_t count) {
     std::vector<float> out(in.size(), -7.0F);
     const std::size_t step = stride == 1 ? in.size() / 3 : 1;
-    simd::run(code, {in.data(), in.data() + step, in.data() + 2 * step}, stride,
+    simd::run(program, {in.data(), in.data() + step, in.data() + 2 * step}, stride,
               {out.data(), out.data() + step, out.data() + 2 * step}, stride, count);
     return out;
 }
 
-void expect_same_bits(simd::Code& code, const std::string& name) {
+void expect_same_bits(simd::Program& program, const std::string& name) {
     static const std::vector<float> in = floats(4 * 1200);
     for (const std::ptrdiff_t stride : {1, 3, 4}) {
         for (std::size_t count = 0; count < 1200; count = count == 70 ? 1199 : count + 1) {
-            const std::shared_ptr<const simd::MachineCode> machine = code.machine;
-            const std::vector<float> got = run(code, in, stride, count);
-            code.machine = nullptr;
-            const std::vector<float> expected = run(code, in, stride, count);
-            code.machine = machine;
+            const std::shared_ptr<const simd::MachineCode> machine = program.machine;
+            const std::vector<float> got = run(program, in, stride, count);
+            program.machine = nullptr;
+            const std::vector<float> expected = run(program, in, stride, count);
+            program.machine = machine;
             if (std::memcmp(got.data(), expected.data(), got.size() * sizeof(float)) == 0) continue;
             for (std::size_t i = 0; i < in.size(); ++i) {
                 ASSERT_EQ(std::memcmp(&got[i], &expected[i], sizeof(float)), 0)
@@ -107,11 +107,11 @@ void expect_same_bits(simd::Code& code, const std::string& name) {
 TEST_P(MachineCode, ComputesTheInterpretersBits) {
     for (const Operator& op : all_operators()) {
         for (const char* display : {"srgb", "linear"}) {
-            simd::Code code =
+            simd::Program program =
                 compile(build_view(make_view(resolve_operator(op.id), "lin_ap1", 1, display)),
                         op.bounds.simd_goal);
-            ASSERT_TRUE(code.machine) << op.id;
-            expect_same_bits(code, op.id + ", " + display);
+            ASSERT_TRUE(program.machine) << op.id;
+            expect_same_bits(program, op.id + ", " + display);
             if (HasFatalFailure()) return;
         }
     }
@@ -121,13 +121,14 @@ TEST_P(MachineCode, ComputesTheInterpretersBitsAtAnyExposure) {
     const std::string exposure(kExposureUniform);
     for (const Operator& op : all_operators()) {
         if (op.is_local()) continue;
-        simd::Code code = compile(
+        simd::Program program = compile(
             build_live_view(make_view(resolve_operator(op.id), "lin_ap1", 0, "srgb"), {exposure}),
             op.bounds.simd_goal, true, {{exposure, {0, -16, 16}}});
-        ASSERT_TRUE(code.machine) << op.id;
-        ASSERT_FALSE(code.uniforms.empty()) << op.id;
-        simd::set_uniforms(code, code.source->evaluate_numbers({{exposure, -3.3}}), code.numbers);
-        expect_same_bits(code, op.id);
+        ASSERT_TRUE(program.machine) << op.id;
+        ASSERT_FALSE(program.uniforms.empty()) << op.id;
+        simd::set_uniforms(program, program.source->evaluate_numbers({{exposure, -3.3}}),
+                           program.numbers);
+        expect_same_bits(program, op.id);
         if (HasFatalFailure()) return;
     }
 }
@@ -140,11 +141,11 @@ TEST_P(MachineCode, BeginsWhereIndirectCallsMayGo) {
             return code.*(&Functions::function_);
         }
     };
-    const simd::Code code =
+    const simd::Program program =
         compile(build_view(make_view(resolve_operator("hable"), "lin_rec709", 0, "srgb")));
-    ASSERT_TRUE(code.machine);
+    ASSERT_TRUE(program.machine);
     constexpr unsigned char kEndbr64[] = {0xF3, 0x0F, 0x1E, 0xFA};
-    for (const auto& parts : Functions::of(*code.machine)) {
+    for (const auto& parts : Functions::of(*program.machine)) {
         ASSERT_FALSE(parts.empty());
         for (const auto function : parts)
             EXPECT_EQ(std::memcmp(reinterpret_cast<const void*>(function), kEndbr64, 4), 0);
@@ -166,12 +167,12 @@ bool refuse_memory(std::uint32_t protection) {
         BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EACCES),
         BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
     };
-    const sock_fprog program = {std::size(filter), filter};
+    const sock_fprog filter_program = {std::size(filter), filter};
     return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
-           prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+           prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter_program) == 0;
 }
 
-/// What a process with fewer rights says.
+/// Answer of a process with fewer rights.
 enum Answer : int { kAsExpected = 40, kOtherwise, kNotSupported };
 
 /// Runs `body` in a process of its own: what it gives up is given up for good.
@@ -195,10 +196,10 @@ class MachineCodeMemory : public MachineCode {
         const std::vector<float> pixels = run(compile(view), in, 3, 100);
         return answer_of([&] {
             if (!give_up_rights()) return kNotSupported;
-            const simd::Code code = compile(view);
-            const bool is_same = std::memcmp(run(code, in, 3, 100).data(), pixels.data(),
+            const simd::Program program = compile(view);
+            const bool is_same = std::memcmp(run(program, in, 3, 100).data(), pixels.data(),
                                              pixels.size() * sizeof(float)) == 0;
-            return (code.machine != nullptr) == expected && is_same ? kAsExpected : kOtherwise;
+            return (program.machine != nullptr) == expected && is_same ? kAsExpected : kOtherwise;
         });
     }
 };
@@ -228,7 +229,7 @@ TEST_P(MachineCodeMemory, IsDoneWithoutWhereTheKernelRefusesIt) {
 
 #endif
 
-/// What no operator of the catalogue makes of its own.
+/// Operations that no operator of the catalog uses by itself.
 TEST_P(MachineCode, ComputesEveryOperation) {
     const Expr r = Expr::input(0);
     const Expr g = Expr::input(1);
@@ -246,9 +247,9 @@ TEST_P(MachineCode, ComputesEveryOperation) {
     for (std::size_t i = 0; i < programs.size(); ++i) {
         const CrossTalkStage stage{.f = programs[i]};
         for (const double max_error : {1e-6, 1e-12}) {  // the second computes in double
-            simd::Code code = compile(Pipeline{stage}, max_error, false);
-            ASSERT_TRUE(code.machine) << i;
-            expect_same_bits(code, "program " + std::to_string(i));
+            simd::Program program = compile(Pipeline{stage}, max_error, false);
+            ASSERT_TRUE(program.machine) << i;
+            expect_same_bits(program, "program " + std::to_string(i));
             if (HasFatalFailure()) return;
         }
     }
@@ -265,13 +266,13 @@ TEST_P(MachineCode, IsNotMadeOfMoreValuesThanATileHolds) {
         }
         channel = channel / 400;
     }
-    const simd::Code code = compile(Pipeline{CrossTalkStage{.f = rgb}}, 1e-6, false);
-    EXPECT_FALSE(code.machine);
+    const simd::Program program = compile(Pipeline{CrossTalkStage{.f = rgb}}, 1e-6, false);
+    EXPECT_FALSE(program.machine);
     const std::vector<float> in = floats(3 * 64);
     std::vector<double> expected(in.size());
     ReferenceEngine(Pipeline{CrossTalkStage{.f = rgb}}).run_rgb(in.data(), expected.data(), 64);
     std::vector<float> got(in.size());
-    simd::run(code, {in.data(), in.data() + 1, in.data() + 2}, 3,
+    simd::run(program, {in.data(), in.data() + 1, in.data() + 2}, 3,
               {got.data(), got.data() + 1, got.data() + 2}, 3, 64);
     for (std::size_t i = 0; i < got.size(); ++i)
         EXPECT_NEAR(static_cast<double>(got[i]), expected[i], 1e-6) << i;
@@ -287,15 +288,15 @@ TEST_P(MachineCode, TouchesNothingBehindTheLastPixel) {
     auto* end = reinterpret_cast<float*>(static_cast<char*>(memory) + 3 * page);
     // One curve; curves and matrices; several parts.
     for (const char* name : {"hable", "agx_blender", "aces_20"}) {
-        const simd::Code code =
+        const simd::Program program =
             compile(build_view(make_view(resolve_operator(name), "lin_rec709", 0, "srgb")));
-        ASSERT_TRUE(code.machine);
+        ASSERT_TRUE(program.machine);
         for (const std::ptrdiff_t stride : {3, 4}) {
             for (std::ptrdiff_t count = 1; count <= 70; ++count) {
-                // Of the last pixel three channels are ours, whatever the stride.
+                // Three channels of the last pixel are ours, whatever the stride.
                 float* pixels = end - (count * stride - (stride - 3));
                 std::fill(pixels, end, 0.18F);
-                simd::run(code, {pixels, pixels + 1, pixels + 2}, stride,
+                simd::run(program, {pixels, pixels + 1, pixels + 2}, stride,
                           {pixels, pixels + 1, pixels + 2}, stride,
                           static_cast<std::size_t>(count));
                 EXPECT_NE(end[-1], 0.18F);
@@ -306,19 +307,19 @@ TEST_P(MachineCode, TouchesNothingBehindTheLastPixel) {
 }
 
 TEST_P(MachineCode, WritesInPlaceAndBetweenLayouts) {
-    simd::Code code =
+    simd::Program program =
         compile(build_view(make_view(resolve_operator("agx_blender"), "lin_rec709", 0, "srgb")));
-    ASSERT_TRUE(code.machine);
+    ASSERT_TRUE(program.machine);
     const std::vector<float> in = floats(4 * 999);
-    const std::shared_ptr<const simd::MachineCode> machine = code.machine;
-    code.machine = nullptr;
-    const std::vector<float> expected = run(code, in, 4, 999);
-    code.machine = machine;
+    const std::shared_ptr<const simd::MachineCode> machine = program.machine;
+    program.machine = nullptr;
+    const std::vector<float> expected = run(program, in, 4, 999);
+    program.machine = machine;
     std::vector<float> pixels = in;
-    simd::run(code, {pixels.data(), pixels.data() + 1, pixels.data() + 2}, 4,
+    simd::run(program, {pixels.data(), pixels.data() + 1, pixels.data() + 2}, 4,
               {pixels.data(), pixels.data() + 1, pixels.data() + 2}, 4, 999);
     std::vector<float> packed(3 * 999);
-    simd::run(code, {in.data(), in.data() + 1, in.data() + 2}, 4,
+    simd::run(program, {in.data(), in.data() + 1, in.data() + 2}, 4,
               {packed.data(), packed.data() + 1, packed.data() + 2}, 3, 999);
     for (std::size_t i = 0; i < 999; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {

@@ -209,7 +209,7 @@ TEST(OperatorsCsvFile, RowsSayWhereTheirNumbersComeFrom) {
     }
 }
 
-/// What reference/style.md asks of a new operator's rows.
+/// Rows that reference/style.md requires for a new operator.
 TEST(OperatorsCsvFile, EveryOperatorHasTheRowsThatFindMistakes) {
     for (const std::string& id : registry_ids()) {
         bool black = false;

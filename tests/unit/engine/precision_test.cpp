@@ -16,7 +16,7 @@ namespace {
 TEST(Sensitivity, IsTheDerivativeAtColorsOfAllMagnitudes) {
     const Expr r = Expr::input(0);
     const Tape tape({r * r, 3 * Expr::input(1), Expr::input(2) / 4});
-    const Sensitivity measured = measure_influence(tape.code(), tape.outputs());
+    const Sensitivity measured = measure_sensitivity(tape.code(), tape.outputs());
     ASSERT_EQ(measured.value.size(), measured.sensitivity.size());
     std::array<double, 3> least = {1, 1, 1};
     std::array<double, 3> most{};

@@ -170,10 +170,10 @@ std::vector<float> sweep(double lo, double hi, std::size_t count) {
 /// A curve by the kernels of its operations.
 std::vector<float> run_kernels(const Expr& curve, const std::vector<float>& rgb,
                                const std::string& target) {
-    const simd::Code code =
+    const simd::Program program =
         simd::compile({curve_stage(curve)}, kBound, simd::find_target(target), false);
     std::vector<float> out(rgb.size());
-    simd::run(code, {rgb.data(), rgb.data() + 1, rgb.data() + 2}, 3,
+    simd::run(program, {rgb.data(), rgb.data() + 1, rgb.data() + 2}, 3,
               {out.data(), out.data() + 1, out.data() + 2}, 3, rgb.size() / 3);
     return out;
 }
@@ -202,13 +202,13 @@ TEST(Simd, ElementaryFunctionsAreWithinTwoUlp) {
 }
 
 TEST(Simd, ElementaryFunctionsInDouble) {
-    // What is left of f(x) 2^30 after its whole part: float shows the digits of f from 2^-30 on,
-    // and the engine has to compute f in double for it.
+    // The fraction of f(x) 2^30: float shows the digits of f from 2^-30 on, and the engine has to
+    // compute f in double for it.
     constexpr double kGain = 0x1p30;
     for (const std::string& target : SimdEngine::targets()) {
         for (const Function& f : functions()) {
             if (f.name == "floor") continue;
-            // Where f is about 1, so that the digits shown are its last ones.
+            // A range in which f is about 1, so that the digits shown are its last ones.
             const double lo = std::max(f.lo, f.name == "1.7^x" || f.name == "exp2" ? -1.0 : 0.3);
             const double hi = std::min(f.hi, f.name.starts_with("pow 78") ? 1.0 : 1.9);
             std::vector<float> x;
@@ -909,7 +909,7 @@ TEST(Simd, LimitsOfNanAreNoPositiveNumbers) {
         for (const double max_error : {1e-6, 1e-12}) {  // the second computes in double
             const std::vector<float> out =
                 run(SimdEngine(pipeline, max_error, target), {0, 0, 0, 3, 1, 0});
-            // As of a number below 0 or, without vectors, as of the limit.
+            // The result is that of a number below 0 or, without vectors, that of the limit.
             EXPECT_LE(out[0], -1) << target;
             EXPECT_LT(out[1], 1) << target;
             EXPECT_LT(out[2], 1) << target;
@@ -1006,7 +1006,7 @@ TEST(Simd, PowersAboutTheFractionWhereTheExponentChanges) {
                 std::array<float, 3> out{};
                 engine.run_rgb(in.data(), out.data(), 1);
                 const double expected = std::pow(std::ldexp(1.5, k), static_cast<double>(0.4F));
-                // Of a float result; the bug that this found was a factor of 2^0.4.
+                // The error of a float result; the bug that this found was a factor of 2^0.4.
                 EXPECT_NEAR(static_cast<double>(out[0]) / expected, 1, 1e-6)
                     << target << ", 1.5 * 2^" << k << " less " << steps << " last places";
             }

@@ -97,7 +97,7 @@ TEST(MeteringKernels, GiveTheSameBitsOnEveryInstructionSet) {
                     EXPECT_EQ(bytes_of(kernels, channels, count, is_plain) ==
                                   bytes_of(best, channels, count, is_plain),
                               true)
-                        << kernels.target << ", " << channels << " channels, " << count
+                        << kernels.name << ", " << channels << " channels, " << count
                         << (is_plain ? " plain pixels" : " pixels");
                 }
             }
@@ -116,10 +116,10 @@ TEST(MeteringKernels, SeeEveryPixelThatIsNotPlain) {
                 std::vector<float> pixels = plain;
                 pixels[i] = is_alpha ? 0.5F : std::numeric_limits<float>::infinity();
                 EXPECT_FALSE(light::are_plain(pixels.data(), channels, kCount, true, kernels))
-                    << kernels.target << ", number " << i;
+                    << kernels.name << ", number " << i;
                 EXPECT_EQ(light::are_plain(pixels.data(), channels, kCount, false, kernels),
                           is_alpha)
-                    << kernels.target << ", number " << i;
+                    << kernels.name << ", number " << i;
             }
         }
     }

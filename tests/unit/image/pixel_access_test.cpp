@@ -36,7 +36,7 @@ std::vector<float> floats() {
     return x;
 }
 
-/// Of runs: 1 to 70 numbers, from places that are no multiples of anything.
+/// Calls run() with runs of 1 to 70 numbers, from places that are no multiples of anything.
 template <class Run>
 void in_runs(std::size_t count, Run run) {
     for (std::size_t begin = 0, n = 1; begin < count; begin += n, n = n % 70 + 1)
@@ -49,7 +49,7 @@ TEST(PixelAccess, RunsOfHalvesAreThoseOfOpenImageIO) {
     for (std::size_t i = 0; i < halves.size(); ++i)
         halves[i] = static_cast<std::uint16_t>(i);
     const std::vector<float> x = floats();
-    // What a picture's pixels go through, its fallback, and every instruction set.
+    // Ways of a picture's pixels: the usual one, its fallback, and every instruction set.
     struct Way {
         std::string name;
         std::function<bool(const std::uint16_t*, float*, std::size_t)> to_float;
@@ -76,7 +76,7 @@ TEST(PixelAccess, RunsOfHalvesAreThoseOfOpenImageIO) {
                                   return true;
                               }}};
     for (const HalfKernels& kernels : half_kernels()) {
-        ways.push_back({kernels.target,
+        ways.push_back({kernels.name,
                         [&](const std::uint16_t* from, float* to, std::size_t n) {
                             return half_to_float(from, to, n, kernels);
                         },

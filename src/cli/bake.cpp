@@ -178,7 +178,6 @@ void bake_one(Options& options) {
     request.decimals = options.decimals;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
-    const bool trilinear = host && is_trilinear(*host);
     LutNodes nodes = LutNodes::automatic;
     if (options.nodes == "sampled") nodes = LutNodes::sampled;
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
@@ -195,7 +194,7 @@ void bake_one(Options& options) {
         const ElapsedLine line("bake");
         constexpr int kLargest = 129;
         const bool is_for_host = host && request.format == host->format;
-        return bake_lut(request, nodes, trilinear, options.max_error,
+        return bake_lut(request, nodes, interpolation_of(host), options.max_error,
                         is_for_host ? host->largest_size : kLargest);
     }();
     const Lut& lut = baked.lut;

@@ -111,7 +111,7 @@ void add_check(CommandLine& program) {
         "  tonewright check my.tone\n"
         "  tonewright check hable:white=4 -o hable.svg");
     command.action([options] {
-        take_lut_options("check", options->lut, *options, false);
+        take_lut_options("check", options->lut, *options, LutOption::no);
         return run_check(*options);
     });
 }

@@ -165,7 +165,7 @@ ColorMap map_of_operator(const Options& given) {
     check_has_operator(options);
     const std::size_t kind =
         find_choice("engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
-    take_lut_options("eval", options.lut, options, true);
+    take_lut_options("eval", options.lut, options, LutOption::yes);
     const View view = view_of(options);
     const Pipeline pipeline = pipeline_of(options, view);
     if (kind == 0) {
@@ -188,7 +188,7 @@ ColorMap map_of_operator(const Options& given) {
 
 int run_explain(Options options) {
     check_has_operator(options);
-    take_lut_options("eval", options.lut, options, true);
+    take_lut_options("eval", options.lut, options, LutOption::yes);
     const View view = view_of(options);
     const Pipeline pipeline = pipeline_of(options, view);
     fmt::print("{}", explain(pipeline, {}, view.op.op->bounds.simd_goal));

@@ -95,7 +95,7 @@ class Forms {
                 command("bake", options_.op, host.id, "." + name)};
     }
 
-    /// What `bake --for` writes.
+    /// The LUT that `bake --for` writes.
     Form table(const LutApplication& host) {
         LutRequest request;
         request.encoding = parse_input_encoding(host.encoding);
@@ -111,8 +111,8 @@ class Forms {
             fmt::format("{} {} {} {} {} {}", host.encoding, host.display, request.view.input,
                         is_curve ? 0 : host.size, host.bits.value_or(0), host.interpolation);
         if (!known_.contains(key)) {
-            known_[key] =
-                bake_lut(request, LutNodes::automatic, is_trilinear(host)).error.photographs.p999;
+            known_[key] = bake_lut(request, LutNodes::automatic, interpolation_of(&host))
+                              .error.photographs.p999;
         }
         const std::string extension =
             is_picture_format(host.format) ? ".png" : "." + name_of(host.format);

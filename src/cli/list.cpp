@@ -52,7 +52,7 @@ std::string_view kind_name(Kind kind) {
 /// The operator's own warnings, and those from its deviations.
 std::vector<std::string> all_warnings(const Operator& op) {
     std::vector<std::string> all = op.warnings;
-    for (const DocumentedDifference& d : op.deviations)
+    for (const DocumentedDifference& d : op.differences)
         all.push_back(to_string(d));
     return all;
 }
@@ -85,7 +85,7 @@ Json to_json(const Operator& op) {
     for (const ParameterSpec& p : op.parameters)
         parameters.push_back(to_json(p, std::find(live.begin(), live.end(), p.name) != live.end()));
     Json deviations = Json::array();
-    for (const DocumentedDifference& d : op.deviations) {
+    for (const DocumentedDifference& d : op.differences) {
         deviations.push_back({{"kind", difference_names().at(static_cast<std::size_t>(d.kind))},
                               {"value", number_or_null(d.value)},
                               {"when", d.when},

@@ -124,14 +124,15 @@ Pipeline before_lut(const char* command, const LutOptions& options, const ViewOp
 }
 
 void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view,
-                      bool has_lut_option) {
+                      LutOption lut_option) {
     for (const auto& [option, parameter, value] :
          {std::tuple("--input-encoding", "input", options.encoding),
           std::tuple("--lut-space", "space", options.space)}) {
         if (value.empty()) continue;
         if (!names_a_lut(view.op)) {
             throw Error(fmt::format("{}: {} is {}; expected a LUT as the operator{}", command,
-                                    option, value, has_lut_option ? ", or --lut" : ""));
+                                    option, value,
+                                    lut_option == LutOption::yes ? ", or --lut" : ""));
         }
         view.set.push_back(fmt::format("{}={}", parameter, value));
     }

@@ -43,11 +43,14 @@ struct LutOptions {
 [[nodiscard]] Pipeline before_lut(const char* command, const LutOptions& options,
                                   const ViewOptions& view, const SourceColor& input);
 
+/// A command either has the option --lut or takes a LUT only as the operator.
+enum class LutOption : bool { no, yes };
+
 /// --input-encoding and --lut-space as settings of an operator that is a LUT.
-/// @param has_lut_option  whether the command takes --lut, for the message
+/// @param lut_option  for the message
 /// @throws Error  they are given for another operator
 void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view,
-                      bool has_lut_option);
+                      LutOption lut_option);
 
 /// Throws the errors of before_lut() before pictures are read.
 void check_lut_options(const char* command, const LutOptions& options, const ViewOptions& view,

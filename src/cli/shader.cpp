@@ -297,7 +297,7 @@ void add_shader(CommandLine& program) {
         "  tonewright shader khronos_neutral --language c --display srgb -o neutral.h");
     command.action([options, command] {
         options->given = command.given();
-        take_lut_options("shader", options->lut, *options, false);
+        take_lut_options("shader", options->lut, *options, LutOption::no);
         return run_shader(*options);
     });
 }

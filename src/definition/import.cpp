@@ -252,9 +252,9 @@ std::string encoding_of(const GlslFunction& function) {
     return "ends with the power 1/" + shortest(std::round(100 / exponent) / 100);
 }
 
-std::string id_of(const std::string& wanted) {
+std::string id_of(const std::string& requested) {
     std::string id;
-    for (const char c : lowercase(wanted)) {
+    for (const char c : lowercase(requested)) {
         const bool is_right = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
         id += is_right ? c : '_';
     }

@@ -705,7 +705,7 @@ class Reader {
                     table.choice("kind", difference_names()));
                 d.value = Table::number_of(table.require("value"), "value", true);
                 d.when = table.text("when");
-                op_.deviations.push_back(d);
+                op_.differences.push_back(d);
             }
         }
         if (const Value* value = file.find("bounds")) {
@@ -716,7 +716,7 @@ class Reader {
             const std::pair<const char*, double*> numbers[] = {
                 {"simd", &bounds.simd},         {"simd_goal", &bounds.simd_goal},
                 {"ocio_cpu", &bounds.ocio_cpu}, {"ocio_gpu", &bounds.ocio_gpu},
-                {"cube", &bounds.cube},         {"cube_hdr", &bounds.cube_hdr}};
+                {"cube", &bounds.lut3d},        {"cube_hdr", &bounds.lut3d_hdr}};
             for (const auto& [key, number] : numbers) {
                 *number = table.number(key, *number);
                 if (!(*number >= 0 && *number <= 1))

@@ -184,7 +184,7 @@ class Writer {
 
     void write_declarations() {
         const std::string& look = resolved_.params.look();
-        for (const DocumentedDifference& d : op_.deviations) {
+        for (const DocumentedDifference& d : op_.differences) {
             const bool is_meant = d.when.empty() || d.when == look ||
                                   (resolved_.preset && resolved_.preset->id == d.when);
             if (!is_meant) continue;
@@ -202,8 +202,8 @@ class Writer {
         bound("simd_goal", b.simd_goal, plain.simd_goal);
         bound("ocio_cpu", b.ocio_cpu, plain.ocio_cpu);
         bound("ocio_gpu", b.ocio_gpu, plain.ocio_gpu);
-        bound("cube", b.cube, plain.cube);
-        bound("cube_hdr", b.cube_hdr, plain.cube_hdr);
+        bound("cube", b.lut3d, plain.lut3d);
+        bound("cube_hdr", b.lut3d_hdr, plain.lut3d_hdr);
         if (bounds.empty()) return;
         text_ += "\n[bounds]\n" + bounds;
         text_line("reason", b.reason);

@@ -29,7 +29,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// (reproducible-builds.org/specs/source-date-epoch). Empty: it is not set.
 /// @throws Error  it is not a number of seconds since 1970
 [[nodiscard]] TONEWRIGHT_API std::string source_date();
-/// As `DateTime` has it, UTC.
+/// A date in the form of `DateTime`, UTC.
 [[nodiscard]] TONEWRIGHT_API std::string date_text(std::time_t seconds);
 
 /// No limit, for a picture of our own.
@@ -84,7 +84,7 @@ class TONEWRIGHT_API PictureReader {
     PictureReader(const PictureReader&) = delete;
     PictureReader& operator=(const PictureReader&) = delete;
 
-    /// As in an ImageBuf in memory, with the facts of the header (header_tags.h).
+    /// The spec of an ImageBuf in memory, with the facts of the header (header_tags.h).
     [[nodiscard]] const OIIO::ImageSpec& spec() const { return spec_; }
     /// From now on, delivers float light of pictures whose encoding no Pipeline can hold, and of
     /// those that are resized.
@@ -199,9 +199,9 @@ class TONEWRIGHT_API PictureWriter {
     void plan_alpha(OIIO::ImageSpec& spec);
     [[nodiscard]] OIIO::ImageBuf select_channels(const OIIO::ImageBuf& picture) const;
     /// Compares the temporary file with what was to be written.
-    void check_written(const OIIO::ImageSpec& wanted, std::string_view file_format,
+    void check_written(const OIIO::ImageSpec& requested, std::string_view file_format,
                        bool is_avif) const;
-    void check_pixels(PictureReader& written, const OIIO::ImageSpec& wanted,
+    void check_pixels(PictureReader& written, const OIIO::ImageSpec& requested,
                       std::string_view file_format) const;
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
     [[nodiscard]] std::string_view format() const;
@@ -211,7 +211,7 @@ class TONEWRIGHT_API PictureWriter {
     void check_subsampling() const;
     void set_compression(OIIO::ImageSpec& spec) const;
     /// Limitations of the file, in one warning.
-    void warn_of_limits(const OIIO::ImageSpec& wanted, const std::string& missing) const;
+    void warn_of_limits(const OIIO::ImageSpec& requested, const std::string& missing) const;
     [[nodiscard]] std::string cut_off(const OIIO::ImageSpec& picture) const;
     void watch_cover(const OIIO::ImageBuf& rows);
     void warn_of_cover() const;

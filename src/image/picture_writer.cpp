@@ -77,8 +77,7 @@ std::string percent_text(double share) {
     return fmt::format("{:.3g}", std::ceil(1000 * share) / 10);
 }
 
-/// Of the blocks that a compression of OpenEXR makes of rows (ImfCompressor.cpp); 0 for other
-/// names.
+/// Rows of the blocks that a compression of OpenEXR makes (ImfCompressor.cpp); 0 for other names.
 int rows_of_block(std::string_view compression) {
     static const std::map<std::string_view, int> rows = {
         {"none", 1}, {"rle", 1},  {"zips", 1},  {"zip", 16},  {"pxr24", 16},
@@ -561,7 +560,7 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     set_compression(spec);
     if (format() != "openexr") {  // the only format whose color tags they are
         erase_attributes(spec, "colorInteropID");
-        if (format() != "png" || !options_.says_how) erase_attributes(spec, "tonewright:*");
+        if (format() != "png" || !options_.write_provenance) erase_attributes(spec, "tonewright:*");
     }
     return spec;
 }
@@ -637,7 +636,7 @@ void PictureWriter::open(const ImageSpec& picture) {
         options_.warn(text);
 }
 
-void PictureWriter::warn_of_limits(const ImageSpec& wanted, const std::string& missing) const {
+void PictureWriter::warn_of_limits(const ImageSpec& requested, const std::string& missing) const {
     if (!options_.warn) return;
     std::vector<std::string> limits;
     if (!missing.empty()) limits.push_back(missing);
@@ -646,7 +645,7 @@ void PictureWriter::warn_of_limits(const ImageSpec& wanted, const std::string& m
         limits.push_back(
             fmt::format("pixels are {}, not {}", title_of(type), title_of(options_.type)));
     }
-    const std::optional<TaggedColor> color = tagged_color(wanted);
+    const std::optional<TaggedColor> color = tagged_color(requested);
     if (color && color->code_points && type == OIIO::TypeDesc::UINT8) {
         limits.emplace_back("gradients in 8 bits show bands");
     }
@@ -846,7 +845,7 @@ void PictureWriter::check_blocks() const {
         fail("OpenEXR could not compress all rows (not enough memory?)");
 }
 
-void PictureWriter::check_written(const ImageSpec& wanted, std::string_view file_format,
+void PictureWriter::check_written(const ImageSpec& requested, std::string_view file_format,
                                   bool is_avif) const {
     if (is_avif && !brand_of(temporary_->path()).starts_with("avi")) {
         fail(
@@ -868,28 +867,28 @@ void PictureWriter::check_written(const ImageSpec& wanted, std::string_view file
         fail(fmt::format("what was written reads back with {} {}; expected {}", what, found,
                          expected));
     };
-    if (is.width != wanted.width || is.height != wanted.height) {
+    if (is.width != requested.width || is.height != requested.height) {
         differs("size", fmt::format("{} x {}", is.width, is.height),
-                fmt::format("{} x {}", wanted.width, wanted.height));
+                fmt::format("{} x {}", requested.width, requested.height));
     }
     // The reader of GIF adds alpha, and that of FITS has only signed integers.
-    const bool adds_alpha = file_format == "gif" && is.nchannels == wanted.nchannels + 1;
-    const bool drops_alpha = file_format == "webp" && is.nchannels == wanted.nchannels - 1;
-    if (is.nchannels != wanted.nchannels && !adds_alpha && !drops_alpha)
-        differs("channels", is.nchannels, wanted.nchannels);
-    if (is.format != wanted.format && file_format != "fits")
-        differs("type", is.format.c_str(), wanted.format.c_str());
+    const bool adds_alpha = file_format == "gif" && is.nchannels == requested.nchannels + 1;
+    const bool drops_alpha = file_format == "webp" && is.nchannels == requested.nchannels - 1;
+    if (is.nchannels != requested.nchannels && !adds_alpha && !drops_alpha)
+        differs("channels", is.nchannels, requested.nchannels);
+    if (is.format != requested.format && file_format != "fits")
+        differs("type", is.format.c_str(), requested.format.c_str());
     if (format_limits(file_format).windows != FileWindows::none &&
-        (is.x != wanted.x || is.y != wanted.y || is.full_width != wanted.full_width ||
-         is.full_height != wanted.full_height)) {
+        (is.x != requested.x || is.y != requested.y || is.full_width != requested.full_width ||
+         is.full_height != requested.full_height)) {
         differs(
             "window",
             fmt::format("{}+{}+{} of {} x {}", is.width, is.x, is.y, is.full_width, is.full_height),
-            fmt::format("{}+{}+{} of {} x {}", wanted.width, wanted.x, wanted.y, wanted.full_width,
-                        wanted.full_height));
+            fmt::format("{}+{}+{} of {} x {}", requested.width, requested.x, requested.y,
+                        requested.full_width, requested.full_height));
     }
     if (options_.verifies) {
-        check_pixels(*written, wanted, file_format);
+        check_pixels(*written, requested, file_format);
     } else if (!has_proxy_) {
         try {
             check_is_complete(*written);  // there is no other proof
@@ -899,7 +898,7 @@ void PictureWriter::check_written(const ImageSpec& wanted, std::string_view file
     }
 }
 
-void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& wanted,
+void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& requested,
                                  std::string_view file_format) const {
     const ImageBuf is = [&] {
         try {
@@ -911,7 +910,7 @@ void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& wanted
                              without_name(e.what(), temporary_->path().string())));
         }
     }();
-    const std::string compression = wanted.get_string_attribute("compression");
+    const std::string compression = requested.get_string_attribute("compression");
     constexpr std::array<std::string_view, 7> kLossless = {"none", "rle", "zip",     "zips",
                                                            "piz",  "lzw", "packbits"};
     const bool is_lossless_exr =
@@ -921,26 +920,26 @@ void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& wanted
                                                         "pnm", "rla",   "ico", "iff"};
     const bool is_exact = std::find(kExact.begin(), kExact.end(), file_format) != kExact.end() ||
                           (is_lossless_exr && (file_format == "openexr" || file_format == "tiff"));
-    const OIIO::TypeDesc type = wanted.format;
+    const OIIO::TypeDesc type = requested.format;
     const bool is_integer = !type.is_floating_point();
     // One code value: half for rounding, half for dither.
     const int bits = options_.bits > 0 ? options_.bits : static_cast<int>(8 * type.size());
     const double step = 1.001 / (std::exp2(bits) - 1);
-    const int channels = std::min(is.nchannels(), wanted.nchannels);
+    const int channels = std::min(is.nchannels(), requested.nchannels);
     std::vector<float> pixel(static_cast<std::size_t>(is.nchannels()));
     double worst = 0;
     // Compression changes pixels, but hardly the sums of blocks.
     constexpr int kBlock = 8;
-    const int columns = (wanted.width + kBlock - 1) / kBlock;
-    const int block_rows = (wanted.height + kBlock - 1) / kBlock;
+    const int columns = (requested.width + kBlock - 1) / kBlock;
+    const int block_rows = (requested.height + kBlock - 1) / kBlock;
     std::vector<double> sums(static_cast<std::size_t>(columns) *
                              static_cast<std::size_t>(block_rows) *
                              static_cast<std::size_t>(channels));
     for (ImageBuf::ConstIterator<float> p(is); !p.done(); ++p) {
-        const std::size_t at =
-            (static_cast<std::size_t>(p.y() - wanted.y) * static_cast<std::size_t>(wanted.width) +
-             static_cast<std::size_t>(p.x() - wanted.x)) *
-            static_cast<std::size_t>(wanted.nchannels);
+        const std::size_t at = (static_cast<std::size_t>(p.y() - requested.y) *
+                                    static_cast<std::size_t>(requested.width) +
+                                static_cast<std::size_t>(p.x() - requested.x)) *
+                               static_cast<std::size_t>(requested.nchannels);
         for (int c = 0; c < channels; ++c) {
             auto should = static_cast<double>(kept_[at + static_cast<std::size_t>(c)]);
             if (is_integer || !is_exact) should = std::clamp(should, 0.0, 1.0);
@@ -953,13 +952,14 @@ void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& wanted
             worst = std::max(worst, difference > allowed || std::isnan(difference)
                                         ? std::max(difference, 1e-9)
                                         : 0);
-            const int block = (p.y() - wanted.y) / kBlock * columns + (p.x() - wanted.x) / kBlock;
+            const int block =
+                (p.y() - requested.y) / kBlock * columns + (p.x() - requested.x) / kBlock;
             sums[static_cast<std::size_t>(block) * static_cast<std::size_t>(channels) +
                  static_cast<std::size_t>(c)] += found - should;
         }
     }
-    // What compression of the lowest quality may lose. Channels in another order, rows at another
-    // place and black pictures lose more.
+    // Bound of the loss by compression of the lowest quality. Channels in another order, rows at
+    // another place and black pictures lose more.
     constexpr double kLossyMean = 0.1;
     const double sum = std::accumulate(sums.begin(), sums.end(), 0.0,
                                        [](double all, double x) { return all + std::fabs(x); });
@@ -977,7 +977,7 @@ void PictureWriter::finish() {
     warn_of_cover();
     const bool is_avif = codec() == "avif";
     const std::string file_format(format());
-    const ImageSpec wanted = out_->spec();
+    const ImageSpec requested = out_->spec();
     if (!out_->close()) fail(problem_of_library(out_->geterror()));
     out_.reset();  // some write their last bytes only now
     if (light_levels_) proxy_->patch(light_levels_place_, clli_chunk(light_levels_->levels()));
@@ -985,7 +985,7 @@ void PictureWriter::finish() {
         if (const int error = proxy_->finish()) fail(problem_of_system(error));
         has_proxy_ = true;
     }
-    check_written(wanted, file_format, is_avif);
+    check_written(requested, file_format, is_avif);
     if (const int error = temporary_->keep()) fail(problem_of_system(error));
     // Readers that use OIIO's shared cache get the new file.
     auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one

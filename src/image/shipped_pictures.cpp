@@ -79,7 +79,7 @@ ImageBuf make_thumbnail(const ShippedLut& shipped, const std::vector<float>& lig
     std::vector<float> shown(light.size());
     for (std::size_t i = 0; i < light.size(); i += 3) {
         const Vector3 out = show(interpolate(shipped.lut, {code[i], code[i + 1], code[i + 2]},
-                                             is_trilinear(*shipped.set->host)));
+                                             interpolation_of(shipped.set->host)));
         for (std::size_t c = 0; c < 3; ++c)
             shown[i + c] = static_cast<float>(out[c]);
     }

@@ -41,7 +41,7 @@ using OIIO::ImageSpec;
 
 /// Provenance of the result, without date and machine: the same run writes the same bytes.
 /// @param resize  @see ReadOptions::resize
-void say_how(ImageSpec& picture, const TonemapOptions& options, const std::string& resize) {
+void add_provenance(ImageSpec& picture, const TonemapOptions& options, const std::string& resize) {
     const std::string op = operator_text(options.op);
     const std::string exposure = shortest(options.exposure_stops);
     std::string display = options.display;
@@ -58,7 +58,7 @@ void say_how(ImageSpec& picture, const TonemapOptions& options, const std::strin
     // The source may be a picture that another run resized.
     erase_attributes(picture, "tonewright:resize");
     if (!resize.empty()) picture.attribute("tonewright:resize", resize);
-    // Of native output, the name of its color may be there, and says more.
+    // For native output, the name of its color may be there, and says more.
     if (options.display != kNativeOutput || !picture.find_attribute("tonewright:display"))
         picture.attribute("tonewright:display", display);
 }
@@ -115,7 +115,7 @@ class FilePass {
           source_(with_color_metadata_alone(reader.spec())) {
         ImageSpec result = result_spec(tonemapper, reader.spec());
         give_date(result, in);
-        if (options.says_how) say_how(result, tonemapper.options(), resize);
+        if (options.write_provenance) add_provenance(result, tonemapper.options(), resize);
         writer.open(result);
         result_ = with_color_metadata_alone(result);
         result_.set_format(writer.row_type());
@@ -257,13 +257,13 @@ std::string finished_warning(const ImageSpec& spec, const TonemapOptions& option
     if (!is_same_name(options.input, kAutoInput) || options.mix == 0) return {};
     const ResolvedOperator& op = options.op;
     if (!expects_a_scene(op)) return {};
-    const PictureDescription said = describe_picture(spec, options.input);
-    if (!is_for_display(said.color)) return {};
+    const PictureDescription description = describe_picture(spec, options.input);
+    if (!is_for_display(description.color)) return {};
     const std::string name = op.op->source == "typed" ? "the formula" : op.op->id;
     return fmt::format(
         "{}{} by {}), so {} tone maps it a second time; the operator clamp keeps the colors, "
         "<<input=lin_rec709>> takes the numbers as scene-linear",
-        kFinishedPicture, said.color.name, said.rule, name);
+        kFinishedPicture, description.color.name, description.rule, name);
 }
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
@@ -289,7 +289,8 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         ImageBuf result;
         tonemapper.run(result, source, {}, nthreads);
         give_date(result.specmod(), in);
-        if (write.says_how) say_how(result.specmod(), tonemapper.options(), read.resize);
+        if (write.write_provenance)
+            add_provenance(result.specmod(), tonemapper.options(), read.resize);
         write_image_atomically(result, out, write);
         return;
     }

@@ -9,10 +9,11 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-BakedLut measured(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
+BakedLut measured(Lut lut, const LutRequest& request, LutInterpolation interpolation,
+                  bool is_fitted) {
     quantize(lut, request);
-    const LutError error = measure_lut(lut, request, trilinear);
-    LutRinging ringing = measure_ringing(lut, request, trilinear);
+    const LutError error = measure_lut(lut, request, interpolation);
+    LutRinging ringing = measure_ringing(lut, request, interpolation);
     return {std::move(lut), error, {}, is_fitted, std::move(ringing)};
 }
 
@@ -23,8 +24,9 @@ constexpr RayBounds kSmoothBounds = {.largest_fall = 0.6 * kSmoothFall, .has_ban
 bool has_no_smooth_ring(const LutRinging& ringing) { return ringing.fall <= kSmoothFall; }
 
 /// Fits nodes that follow the operator along rising exposure, if possible.
-BakedLut smooth(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
-    BakedLut baked = measured(lut, request, trilinear, is_fitted);
+BakedLut smooth(Lut lut, const LutRequest& request, LutInterpolation interpolation,
+                bool is_fitted) {
+    BakedLut baked = measured(lut, request, interpolation, is_fitted);
     // If the operator clips colors of the domain, no nodes help: successful repairs started below
     // this error.
     constexpr double kHopeless = 0.3;
@@ -32,8 +34,8 @@ BakedLut smooth(Lut lut, const LutRequest& request, bool trilinear, bool is_fitt
     if ((has_no_smooth_ring(ringing) && ringing.p999 <= kFittedRayError) ||
         ringing.p999 > kHopeless)
         return baked;
-    RayFit(lut, request, trilinear, RayNodes::all).fit(lut, kSmoothBounds);
-    BakedLut calm = measured(std::move(lut), request, trilinear, is_fitted);
+    RayFit(lut, request, interpolation, RayNodes::all).fit(lut, kSmoothBounds);
+    BakedLut calm = measured(std::move(lut), request, interpolation, is_fitted);
     const bool was_right = has_no_smooth_ring(baked.ringing);
     const bool is_better = has_no_smooth_ring(calm.ringing) == was_right
                                ? calm.ringing.p999 < baked.ringing.p999
@@ -41,16 +43,23 @@ BakedLut smooth(Lut lut, const LutRequest& request, bool trilinear, bool is_fitt
     return is_better ? calm : baked;
 }
 
+LutInterpolation other(LutInterpolation interpolation) {
+    return interpolation == LutInterpolation::trilinear ? LutInterpolation::tetrahedral
+                                                        : LutInterpolation::trilinear;
+}
+
 /// Also measures the other interpolation.
-BakedLut complete(BakedLut baked, const LutRequest& request, bool trilinear) {
-    if (baked.lut.dimension == 3) baked.other_error = measure_lut(baked.lut, request, !trilinear);
+BakedLut complete(BakedLut baked, const LutRequest& request, LutInterpolation interpolation) {
+    if (baked.lut.dimension == 3)
+        baked.other_error = measure_lut(baked.lut, request, other(interpolation));
     return baked;
 }
 
-/// As `automatic` was before photographs counted.
-BakedLut bake_smooth(const LutRequest& request, const Lut& sampled, bool trilinear) {
-    BakedLut fitted = smooth(fit_lut(request, sampled), request, trilinear, true);
-    BakedLut plain = smooth(sampled, request, trilinear, false);
+/// The LUT of LutNodes::smooth: sampled or fitted, whichever is better along the rays.
+BakedLut bake_smooth(const LutRequest& request, const Lut& sampled,
+                     LutInterpolation interpolation) {
+    BakedLut fitted = smooth(fit_lut(request, sampled), request, interpolation, true);
+    BakedLut plain = smooth(sampled, request, interpolation, false);
     for (bool (*is_right)(const LutRinging&) : {+[](const LutRinging& ringing) {
                                                     return has_no_smooth_ring(ringing) &&
                                                            ringing.p999 <= kLargestRayError;
@@ -66,7 +75,8 @@ BakedLut bake_smooth(const LutRequest& request, const Lut& sampled, bool triline
 }
 
 /// The LUT without rings that is nearest to the operator on photographs.
-BakedLut bake_for_photographs(const LutRequest& request, const Lut& sampled, bool trilinear) {
+BakedLut bake_for_photographs(const LutRequest& request, const Lut& sampled,
+                              LutInterpolation interpolation) {
     // With more, colors that photographs lack get worse; with less, photographs do (measured on
     // five operators).
     constexpr double kPhotographShare = 0.8;
@@ -80,12 +90,12 @@ BakedLut bake_for_photographs(const LutRequest& request, const Lut& sampled, boo
     const auto is_better = [&](const BakedLut& a, const BakedLut& b) {
         return rings(a.ringing) == rings(b.ringing) ? badness(a) < badness(b) : rings(b.ringing);
     };
-    const RayFit rays(sampled, request, trilinear, RayNodes::unused);
+    const RayFit rays(sampled, request, interpolation, RayNodes::unused);
     const auto without_falls = [&](Lut& lut) { rays.fit(lut, {}); };
     const Lut fitted = fit_lut(request, sampled, kPhotographShare, without_falls);
-    BakedLut best = measured(fitted, request, trilinear, true);
+    BakedLut best = measured(fitted, request, interpolation, true);
     const auto offer = [&](Lut lut, bool is_fitted) {
-        BakedLut baked = measured(std::move(lut), request, trilinear, is_fitted);
+        BakedLut baked = measured(std::move(lut), request, interpolation, is_fitted);
         if (is_better(baked, best)) best = std::move(baked);
     };
     if (!follows_operator(best.ringing)) {
@@ -99,14 +109,14 @@ BakedLut bake_for_photographs(const LutRequest& request, const Lut& sampled, boo
     return best;
 }
 
-BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear) {
+BakedLut bake_size(const LutRequest& request, LutNodes nodes, LutInterpolation interpolation) {
     const Lut sampled = sample_lut(request);
     if (sampled.dimension == 1 || nodes == LutNodes::sampled)
-        return measured(sampled, request, trilinear, false);
+        return measured(sampled, request, interpolation, false);
     if (nodes == LutNodes::fitted)
-        return measured(fit_lut(request, sampled), request, trilinear, true);
-    if (nodes == LutNodes::smooth) return bake_smooth(request, sampled, trilinear);
-    return bake_for_photographs(request, sampled, trilinear);
+        return measured(fit_lut(request, sampled), request, interpolation, true);
+    if (nodes == LutNodes::smooth) return bake_smooth(request, sampled, interpolation);
+    return bake_for_photographs(request, sampled, interpolation);
 }
 
 /// Sizes to try; each format uses those that it supports.
@@ -119,9 +129,10 @@ std::vector<int> sizes_of(LutFormat format) {
 
 }  // namespace
 
-BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
+BakedLut bake_lut(const LutRequest& request, LutNodes nodes, LutInterpolation interpolation,
                   std::optional<double> max_error, int largest_size) {
-    if (!max_error) return complete(bake_size(request, nodes, trilinear), request, trilinear);
+    if (!max_error)
+        return complete(bake_size(request, nodes, interpolation), request, interpolation);
     if (request.size) {
         throw Error({.parameter = "size",
                      .value = std::to_string(*request.size),
@@ -131,16 +142,16 @@ BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
         throw Error(
             {.parameter = "max_error", .value = shortest(*max_error), .expected = "above 0"});
     // A 1D table chooses its own number of entries.
-    BakedLut baked = bake_size(request, nodes, trilinear);
+    BakedLut baked = bake_size(request, nodes, interpolation);
     if (baked.lut.dimension == 1 && baked.error.photographs.p999 <= *max_error) return baked;
     if (baked.lut.dimension == 3) {
         LutRequest sized = request;
         for (const int size : sizes_of(request.format)) {
             if (size > largest_size) break;
             sized.size = size;
-            baked = bake_size(sized, nodes, trilinear);
+            baked = bake_size(sized, nodes, interpolation);
             if (baked.error.photographs.p999 <= *max_error)
-                return complete(std::move(baked), sized, trilinear);
+                return complete(std::move(baked), sized, interpolation);
         }
     }
     throw Error({.parameter = "max_error",

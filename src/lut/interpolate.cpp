@@ -67,8 +67,11 @@ void run_shaper(const InputEncoding& encoding, std::span<const float> light,
 /// A LUT and the function that it represents.
 class Comparison {
   public:
-    Comparison(const Lut& lut, const LutRequest& request, bool trilinear)
-        : lut_(lut), request_(request), trilinear_(trilinear), engine_(build_view(request.view)) {}
+    Comparison(const Lut& lut, const LutRequest& request, LutInterpolation interpolation)
+        : lut_(lut),
+          request_(request),
+          interpolation_(interpolation),
+          engine_(build_view(request.view)) {}
 
     /// Range of the encoding.
     [[nodiscard]] bool is_inside(const float* light) const {
@@ -88,7 +91,8 @@ class Comparison {
         engine_.run_rgb(light.data(), wanted.data(), light.size() / 3);
         std::vector<double> errors;
         for (std::size_t i = 0; i < light.size(); i += 3) {
-            const Vector3 out = interpolate(lut_, {code[i], code[i + 1], code[i + 2]}, trilinear_);
+            const Vector3 out =
+                interpolate(lut_, {code[i], code[i + 1], code[i + 2]}, interpolation_);
             double worst = 0;
             for (std::size_t c = 0; c < 3; ++c) {
                 shown[i + c] = out[c];
@@ -168,7 +172,7 @@ class Comparison {
 
     const Lut& lut_;
     const LutRequest& request_;
-    bool trilinear_;
+    LutInterpolation interpolation_;
     ReferenceEngine engine_;
 };
 
@@ -198,7 +202,7 @@ PhotographError photograph_error(const View& view, std::vector<double> shown,
     const DisplayCode code(view);
     code.encode(shown);
     code.encode(wanted);
-    // What is darker than the input holds becomes its black. Below 0 are colors outside its
+    // Light that is darker than the input holds becomes its black. Below 0 are colors outside its
     // primaries; conversions round 0 to less than this.
     constexpr double kRounding = 1e-6;
     const double darkest_held = encoding ? std::min(encoding->scene_lo, 0.0) - kRounding : 0;
@@ -240,7 +244,7 @@ PhotographError photograph_error(const View& view, std::vector<double> shown,
     return error;
 }
 
-Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear) {
+Vector3 interpolate(const Lut& lut, const Vector3& rgb, LutInterpolation interpolation) {
     Vector3 out{};
     if (lut.dimension == 1) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -250,7 +254,7 @@ Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear) {
         }
         return out;
     }
-    const NodeWeights at = node_weights(rgb, static_cast<std::size_t>(lut.size), trilinear);
+    const NodeWeights at = node_weights(rgb, static_cast<std::size_t>(lut.size), interpolation);
     for (std::size_t k = 0; k < at.count; ++k) {
         for (std::size_t c = 0; c < 3; ++c)
             out[c] += at.weight[k] * static_cast<double>(lut.values[3 * at.node[k] + c]);
@@ -290,8 +294,8 @@ std::vector<float> light_of(const InputEncoding& encoding, std::span<const doubl
     return light;
 }
 
-LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) {
-    const Comparison comparison(lut, request, trilinear);
+LutError measure_lut(const Lut& lut, const LutRequest& request, LutInterpolation interpolation) {
+    const Comparison comparison(lut, request, interpolation);
     const InputSpace& space = find_input_space(request.view.input);
     SampleSet samples = make_sample_set(space, {17, 50000});
     // Also samples table inputs over the whole 3D LUT, including corners that no scene color of the
@@ -323,7 +327,9 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
     result.max = lut.dimension == 3 ? comparison.largest_error(light, errors) : stats.max;
     result.p999 = stats.p999;
     result.mean = stats.mean;
-    result.interpolation = lut.dimension == 1 ? "linear" : trilinear ? "trilinear" : "tetrahedral";
+    result.interpolation = lut.dimension == 1                             ? "linear"
+                           : interpolation == LutInterpolation::trilinear ? "trilinear"
+                                                                          : "tetrahedral";
     if (request.view.display != kLinearOutput && request.view.display != kNativeOutput) {
         const ErrorStats seen =
             summarise(delta_e_itp(find_display(request.view.display), shown, wanted));

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "tonewright/color.h"
+#include "tonewright/lut.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -19,7 +20,7 @@ struct NodeWeights {
 /// @param rgb   clamped to [0, 1], NaN to 0
 /// @param edge  nodes a side
 [[nodiscard]] inline NodeWeights node_weights(const Vector3& rgb, std::size_t edge,
-                                              bool trilinear) {
+                                              LutInterpolation interpolation) {
     std::array<std::size_t, 3> corner{};
     std::array<double, 3> f{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -35,7 +36,7 @@ struct NodeWeights {
         weights.weight[weights.count] = weight;
         ++weights.count;
     };
-    if (trilinear) {
+    if (interpolation == LutInterpolation::trilinear) {
         for (std::size_t i = 0; i < 8; ++i) {
             double weight = 1;
             const std::array<std::size_t, 3> step = {i & 1, i >> 1 & 1, i >> 2 & 1};

@@ -126,7 +126,8 @@ std::vector<NamedColor> dense_colors() {
 }
 
 /// Share of the pixels of photographs that each node shows.
-std::vector<double> photograph_shares(const Lut& lut, const LutRequest& request, bool trilinear) {
+std::vector<double> photograph_shares(const Lut& lut, const LutRequest& request,
+                                      LutInterpolation interpolation) {
     const std::vector<double> place =
         table_input(lut, request, photograph_light(find_input_space(request.view.input).primaries));
     const auto edge = static_cast<std::size_t>(lut.size);
@@ -134,7 +135,7 @@ std::vector<double> photograph_shares(const Lut& lut, const LutRequest& request,
     const std::vector<double>& share = photograph_colors().share;
     for (std::size_t i = 0; i < share.size(); ++i) {
         const NodeWeights at =
-            node_weights({place[3 * i], place[3 * i + 1], place[3 * i + 2]}, edge, trilinear);
+            node_weights({place[3 * i], place[3 * i + 1], place[3 * i + 2]}, edge, interpolation);
         for (std::size_t k = 0; k < at.count; ++k)
             shares[at.node[k]] += share[i] * at.weight[k];
     }
@@ -163,7 +164,8 @@ struct Slopes {
 
 }  // namespace
 
-LutRinging measure_ringing(const Lut& lut, const LutRequest& request, bool trilinear) {
+LutRinging measure_ringing(const Lut& lut, const LutRequest& request,
+                           LutInterpolation interpolation) {
     LutRinging result;
     if (lut.dimension != 3) return result;
     const std::vector<NamedColor> colors = chart_colors();
@@ -171,7 +173,7 @@ LutRinging measure_ringing(const Lut& lut, const LutRequest& request, bool trili
     std::array<std::vector<double>, 3> shown;
     for (std::size_t i = 0; i < rays.input.size(); i += 3) {
         const Vector3 out =
-            interpolate(lut, {rays.input[i], rays.input[i + 1], rays.input[i + 2]}, trilinear);
+            interpolate(lut, {rays.input[i], rays.input[i + 1], rays.input[i + 2]}, interpolation);
         for (std::size_t c = 0; c < 3; ++c)
             shown[c].push_back(out[c]);
     }
@@ -201,11 +203,12 @@ struct RayFit::Prepared {
     Rays rays;
     DisplayCode code;
     std::vector<NodeWeights> weights;
-    /// How far a node moves; 0: it stays.
+    /// Mobility of each node; 0: it stays.
     std::vector<double> mobility;
 };
 
-RayFit::RayFit(const Lut& lut, const LutRequest& request, bool trilinear, RayNodes nodes) {
+RayFit::RayFit(const Lut& lut, const LutRequest& request, LutInterpolation interpolation,
+               RayNodes nodes) {
     const auto edge = static_cast<std::size_t>(lut.size);
     Rays rays = make_rays(dense_colors(), lut, request);
     const DisplayCode code(request.view);
@@ -214,14 +217,14 @@ RayFit::RayFit(const Lut& lut, const LutRequest& request, bool trilinear, RayNod
     std::vector<NodeWeights> weights;
     weights.reserve(rays.input.size() / 3);
     for (std::size_t i = 0; i < rays.input.size(); i += 3) {
-        weights.push_back(
-            node_weights({rays.input[i], rays.input[i + 1], rays.input[i + 2]}, edge, trilinear));
+        weights.push_back(node_weights({rays.input[i], rays.input[i + 1], rays.input[i + 2]}, edge,
+                                       interpolation));
     }
     std::vector<double> mobility(edge * edge * edge, 1);
     if (nodes == RayNodes::unused) {
         // Nodes that photographs use a thousand times more move a thousand times less.
         constexpr double kUnused = 1e-5;
-        mobility = photograph_shares(lut, request, trilinear);
+        mobility = photograph_shares(lut, request, interpolation);
         for (double& m : mobility)
             m = 1 / (1 + m / kUnused);
         for (std::size_t i = 0; i < edge; ++i)

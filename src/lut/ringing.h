@@ -31,7 +31,8 @@ enum class RayNodes : std::uint8_t {
 class RayFit {
   public:
     /// @param lut  of the size that fit() gets
-    RayFit(const Lut& lut, const LutRequest& request, bool trilinear, RayNodes nodes);
+    RayFit(const Lut& lut, const LutRequest& request, LutInterpolation interpolation,
+           RayNodes nodes);
     ~RayFit();
     RayFit(const RayFit&) = delete;
     RayFit& operator=(const RayFit&) = delete;

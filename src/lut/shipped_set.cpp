@@ -71,23 +71,25 @@ ShippedLut plan(const LutPresetSet& set, const std::string& id) {
 }  // namespace
 
 void bake_shipped_lut(ShippedLut& planned) {
-    const bool trilinear = is_trilinear(*planned.set->host);
-    BakedLut baked = bake_lut(planned.request, LutNodes::automatic, trilinear);
+    const LutInterpolation interpolation = interpolation_of(planned.set->host);
+    BakedLut baked = bake_lut(planned.request, LutNodes::automatic, interpolation);
     if (!is_picture_format(planned.request.format))
         planned.contents = write_lut(baked, planned.request);
     planned.lut = std::move(baked.lut);
     planned.is_fitted = baked.is_fitted;
     // A 1D table has only one figure.
     const LutError other = baked.other_error.value_or(baked.error);
-    planned.tetrahedral = trilinear ? other : baked.error;
-    planned.trilinear = trilinear ? baked.error : other;
+    const bool is_trilinear = interpolation == LutInterpolation::trilinear;
+    planned.tetrahedral = is_trilinear ? other : baked.error;
+    planned.trilinear = is_trilinear ? baked.error : other;
     planned.ringing = baked.ringing;
 }
 
 namespace {
 
 const LutError& error_at_host(const ShippedLut& lut) {
-    return is_trilinear(*lut.set->host) ? lut.trilinear : lut.tetrahedral;
+    return interpolation_of(lut.set->host) == LutInterpolation::trilinear ? lut.trilinear
+                                                                          : lut.tetrahedral;
 }
 
 std::string csv_field(const std::string& text) {
@@ -214,7 +216,8 @@ std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts
                 "|---|---|---|---|---|---|---|---|---|---|---|\n",
                 host.id, set.display.empty() ? "" : fmt::format(" <<display={}>>", set.display),
                 r.decimals ? fmt::format(" <<decimals={}>>", *r.decimals) : "",
-                is_trilinear(host) ? "trilinear" : "tetrahedral",
+                interpolation_of(&host) == LutInterpolation::trilinear ? "trilinear"
+                                                                       : "tetrahedral",
                 std::log2(r.encoding.scene_hi / 0.18));
         }
         is_first = false;
@@ -264,8 +267,10 @@ std::string readme(const std::vector<ShippedLut>& luts) {
 
 }  // namespace
 
-bool is_trilinear(const LutApplication& host) {
-    return host.interpolation.starts_with("trilinear");
+LutInterpolation interpolation_of(const LutApplication* application) {
+    if (!application) return LutInterpolation::automatic;
+    return application->interpolation.starts_with("trilinear") ? LutInterpolation::trilinear
+                                                               : LutInterpolation::tetrahedral;
 }
 
 const std::vector<LutPresetSet>& lut_preset_sets() {

@@ -268,8 +268,8 @@ class Checker {
                                                     const std::string& words,
                                                     std::optional<double> x = {}) const {
         const auto found = measured_.find(kind);
-        const auto said = declared_.find(kind);
-        if (found == measured_.end() && (said == declared_.end() || !has_defaults_))
+        const auto declared = declared_.find(kind);
+        if (found == measured_.end() && (declared == declared_.end() || !has_defaults_))
             return std::nullopt;
         const std::string key =
             "kind = \"" + difference_names().at(static_cast<std::size_t>(kind)) + "\"";
@@ -277,20 +277,21 @@ class Checker {
             return LawResult{law,
                              Verdict::breaks,
                              "holds, but the definition declares \"" +
-                                 to_string(DocumentedDifference{kind, said->second, ""}) +
+                                 to_string(DocumentedDifference{kind, declared->second, ""}) +
                                  "\"; remove the deviation with " + key,
                              {}};
         }
         const std::string text = to_string(DocumentedDifference{kind, found->second, ""});
-        if (said == declared_.end()) return LawResult{law, Verdict::breaks, words, x};
+        if (declared == declared_.end()) return LawResult{law, Verdict::breaks, words, x};
         // Declared with two digits: 5 % covers their rounding.
         const bool agrees =
-            !has_defaults_ || said->second == found->second ||
-            std::fabs(said->second - found->second) <= 0.05 * std::fabs(found->second);
+            !has_defaults_ || declared->second == found->second ||
+            std::fabs(declared->second - found->second) <= 0.05 * std::fabs(found->second);
         if (agrees) return LawResult{law, Verdict::as_declared, text, {}};
         return LawResult{
             law, Verdict::breaks,
-            text + ", but the definition declares " + rounded(said->second, 3) + " with " + key, x};
+            text + ", but the definition declares " + rounded(declared->second, 3) + " with " + key,
+            x};
     }
 
     LawResult finite() const {
@@ -567,7 +568,7 @@ Differences declared_differences(const ResolvedOperator& op) {
     };
     Differences declared;
     for (const bool special : {false, true}) {
-        for (const DocumentedDifference& d : op.op->deviations) {
+        for (const DocumentedDifference& d : op.op->differences) {
             if (special ? is_special(d) : d.when.empty()) declared[d.kind] = d.value;
         }
     }

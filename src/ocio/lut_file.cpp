@@ -238,17 +238,17 @@ struct LutFile::Form {
     std::optional<OcioCpu> ocio;
     std::optional<DeviceLink> link;
     std::optional<Lut> table;
-    bool is_trilinear = false;
+    LutInterpolation interpolation = LutInterpolation::automatic;
     std::string note;
 };
 
 LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
     auto form = std::make_unique<Form>();
-    form->is_trilinear = interpolation == LutInterpolation::trilinear;
+    form->interpolation = interpolation;
     const std::string extension = extension_of(path);
     std::string bytes = checked_bytes(path);
     if (is_device_link(extension)) {
-        if (form->is_trilinear) {
+        if (interpolation == LutInterpolation::trilinear) {
             throw Error("interpolation is trilinear; expected tetrahedral for " + path +
                         ", an ICC device link");
         }
@@ -273,7 +273,7 @@ LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
 
 LutFile::LutFile(Lut table, LutInterpolation interpolation) {
     auto form = std::make_unique<Form>();
-    form->is_trilinear = interpolation == LutInterpolation::trilinear;
+    form->interpolation = interpolation;
     form->table = std::move(table);
     form_ = std::move(form);
 }
@@ -294,7 +294,7 @@ void LutFile::run_rgb(const float* in, float* out, std::size_t count) const {
                 interpolate(*form_->table,
                             {static_cast<double>(in[i]), static_cast<double>(in[i + 1]),
                              static_cast<double>(in[i + 2])},
-                            form_->is_trilinear);
+                            form_->interpolation);
             for (std::size_t c = 0; c < 3; ++c)
                 out[i + c] = static_cast<float>(shown[c]);
         }

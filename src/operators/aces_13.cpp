@@ -338,7 +338,7 @@ std::vector<Operator> define_aces_13() {
         .simd_goal = 8e-6,
         .ocio_cpu = 3e-5,
         .ocio_gpu = 6e-5,
-        .cube = 2e-3,
+        .lut3d = 2e-3,
         .reason =
             "simd: twice as fast as with 1e-6; hdr: output up to 10, where a float has steps of "
             "1e-6; ctl: OpenColorIO's red modifier uses another saturation in dark colors"};
@@ -376,8 +376,8 @@ std::vector<Operator> define_aces_13() {
     };
     op.warnings = {
         "hdr outputs tint grays near the peak slightly blue, because red reaches its limit first"};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr_1000"},
-                     {DocumentedDifference::Kind::crushes_black, 0.00199, "ctl"}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr_1000"},
+                      {DocumentedDifference::Kind::crushes_black, 0.00199, "ctl"}};
     op.build = build;
     op.output_primaries = [](const Params& p) {
         return form_of(p).is_hdr ? kRec2020 : limiting_primaries(p, kAP1);

@@ -910,8 +910,8 @@ std::vector<Operator> define_aces_20() {
     op.bounds = {
         .simd = 3e-5,
         .simd_goal = 2.4e-5,
-        .cube = 0.2,
-        .cube_hdr = 0.4,
+        .lut3d = 0.2,
+        .lut3d_hdr = 0.4,
         .reason =
             "simd: twice as fast as with 1e-6, which needs double precision throughout; 3D LUT: "
             "the gamut compression bends in every direction, and jumps near the edge of AP1"};

@@ -98,12 +98,12 @@ Operator hill() {
          {{"prescale", "1.8"}, {"white", "1"}, {"clamp", "no"}}},
         {"threejs", "three.js: prescale 1/0.6", {{"prescale", "1.6666666666666667"}}},
     };
-    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
-                     {DocumentedDifference::Kind::crushes_black, 0.0018, "godot"},
-                     {DocumentedDifference::Kind::crushes_black, 0.0019, "threejs"},
-                     {DocumentedDifference::Kind::black, -0.00049, "godot"},
-                     {DocumentedDifference::Kind::exceeds_white, 1.8, "bakinglab"},
-                     {DocumentedDifference::Kind::exceeds_white, 1.3, "godot"}};
+    op.differences = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
+                      {DocumentedDifference::Kind::crushes_black, 0.0018, "godot"},
+                      {DocumentedDifference::Kind::crushes_black, 0.0019, "threejs"},
+                      {DocumentedDifference::Kind::black, -0.00049, "godot"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.8, "bakinglab"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.3, "godot"}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr prescale = p.expr("prescale");
         const Expr white = p.expr("white");
@@ -132,7 +132,7 @@ Operator hill_misplaced_bracket() {
                   "three.js for WebGPU (mrdoob/three.js 0a0cd973, ToneMappingFunctions.js)",
                   "a misplaced bracket in the denominator: v (v + 0.432951) 0.983729 instead of v "
                   "(0.983729 v + 0.432951)");
-    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0019, ""}};
+    op.differences = {{DocumentedDifference::Kind::crushes_black, 0.0019, ""}};
     op.build = [](const Params&) -> Pipeline {
         const Expr v = Expr::input();
         const Expr a = named("numerator", v * (v + 0.0245786) - 0.000090537);
@@ -159,9 +159,9 @@ Operator hill_misprinted_product() {
                             "the page 64.github.io/tonemapping (before its commit 936048c)",
                             "its matrix product reads green instead of red in two rows, so grays "
                             "are right and colors are wrong");
-    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
-                     {DocumentedDifference::Kind::black, -0.00038, ""},
-                     {DocumentedDifference::Kind::exceeds_white, 1.02, ""}};
+    op.differences = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
+                      {DocumentedDifference::Kind::black, -0.00038, ""},
+                      {DocumentedDifference::Kind::exceeds_white, 1.02, ""}};
     op.build = [](const Params&) -> Pipeline {
         return {limit_to_positive(), MatrixStage{green_for_red(kHillInput), "input"},
                 named("rrt_and_odt_fit", curve_stage(hill_curve(Expr::input()))),
@@ -190,14 +190,14 @@ Operator filament() {
     op.working = kRec2020;
     // The two weights differ by up to 0.0074. Their largest effect on any color is 7.37e-3 on sRGB,
     // at Rec.2020 11.4, 0, 6.8 (test_operators.py).
-    op.bounds = {.cube = 7.4e-3,
+    op.bounds = {.lut3d = 7.4e-3,
                  .reason = "OpenColorIO's fixed functions weight hues near red differently"};
     op.parameters = {number_parameter(
         "brightness", "", 1, 0.01, 100,
         "factor before the curve: 1 for Filament's ACES, 1/0.6 for its ACESLegacy")};
     op.presets = {{"legacy", "Filament's ACESLegacy", {{"brightness", "1.6666666666666667"}}}};
-    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.869, ""},
-                     {DocumentedDifference::Kind::tints_gray, 0.057, ""}};
+    op.differences = {{DocumentedDifference::Kind::never_reaches_white, 0.869, ""},
+                      {DocumentedDifference::Kind::tints_gray, 0.057, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Matrix3 to_ap1 = rec2020_to_ap1_unadapted();
         const Vector3 w = ap1_weights();

@@ -115,9 +115,9 @@ Operator sobotka() {
     op.looks = {{"golden", "Golden", "warm: ASC CDL slope 1 0.9 0.5, power 0.8, saturation 1.3"},
                 {"punchy", "Punchy", "darker and stronger: ASC CDL power 1.35, saturation 1.4"}};
     op.warnings = {"not Blender's AgX: it shows mid gray at code value 0.5, Blender at 0.46"};
-    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.193, "golden"},
-                     {DocumentedDifference::Kind::exceeds_white, 1.06, "golden"},
-                     {DocumentedDifference::Kind::tints_gray, 0.54, "golden"}};
+    op.differences = {{DocumentedDifference::Kind::never_reaches_white, 0.193, "golden"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.06, "golden"},
+                      {DocumentedDifference::Kind::tints_gray, 0.54, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
         const AgxSigmoid sigmoid(10 / 16.5, 0.5, 2.0, 3.0, 3.25);
         Pipeline stages = {limit_to_positive(), MatrixStage{kInset, "inset"}, limit_to_shaper(),
@@ -147,11 +147,11 @@ Operator minimal() {
     op.code_power = 2.2;
     op.parameters = {choice_parameter("order", {"6", "7"}, "6", "order of the polynomial")};
     op.presets = {{"order7", "Filament's polynomial of order 7", {{"order", "7"}}}};
-    op.deviations = {{DocumentedDifference::Kind::black, -0.0023, ""},
-                     {DocumentedDifference::Kind::black, 0.0029, "order7"},
-                     {DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
-                     {DocumentedDifference::Kind::never_reaches_white, 0.961, "order7"},
-                     {DocumentedDifference::Kind::not_monotone, 0.00024, "order7"}};
+    op.differences = {{DocumentedDifference::Kind::black, -0.0023, ""},
+                      {DocumentedDifference::Kind::black, 0.0029, "order7"},
+                      {DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
+                      {DocumentedDifference::Kind::never_reaches_white, 0.961, "order7"},
+                      {DocumentedDifference::Kind::not_monotone, 0.00024, "order7"}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr n = named("n", normalized_log(Expr::input()));
         const Expr f = p.choice("order") == "6" ? polynomial6(n) : polynomial7(n);
@@ -170,8 +170,8 @@ Operator minimal_clamped() {
                   "is shown at 0.59 of white");
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
-    op.deviations = {{DocumentedDifference::Kind::black, -0.0023, ""},
-                     {DocumentedDifference::Kind::never_reaches_white, 0.59, ""}};
+    op.differences = {{DocumentedDifference::Kind::black, -0.0023, ""},
+                      {DocumentedDifference::Kind::never_reaches_white, 0.59, ""}};
     op.build = [](const Params&) -> Pipeline {
         return {limit_to_positive(), MatrixStage{kInset, "inset"},
                 ClampStage{std::exp2(kLowest), 1},
@@ -188,8 +188,8 @@ Operator matrix_and_power() {
         "QtMeshEditor (fernandotonon/QtMeshEditor 251f723f, HdrTonemap.cpp; pull request 782)",
         "it has no logarithm and no sigmoid: it limits scene values to 1, applies a matrix that "
         "turns grays green, and raises the result to the power 1.35");
-    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.29, ""},
-                     {DocumentedDifference::Kind::tints_gray, 0.42, ""}};
+    op.differences = {{DocumentedDifference::Kind::never_reaches_white, 0.29, ""},
+                      {DocumentedDifference::Kind::tints_gray, 0.42, ""}};
     op.build = [](const Params&) -> Pipeline {
         // clang-format off
         constexpr Matrix3 agx = {{{0.224282, 0.130789, 0.044929},
@@ -224,8 +224,8 @@ Operator threejs() {
         "kept by the matrix to Rec.2020 and the inset; then limited to the lower end of the "
         "shaper's range";
     op.warnings = {"grays get darker by 5e-6 at scene-linear 16.3, where the shaper ends"};
-    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
-                     {DocumentedDifference::Kind::not_monotone, 16, ""}};
+    op.differences = {{DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
+                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
         // Rec.709 to Rec.2020 and its inverse, as the source prints them: 0.0113 is not the rounded
         // value.
@@ -277,21 +277,21 @@ Operator filament() {
     // (curve entries, 2.7e-7; straight lines for the power 2.2, 3.3e-7) and the sums in the
     // matrices explain the rest. The worst case of all of them is 3.0e-6.
     op.bounds = {.ocio_cpu = 4e-7,
-                 .cube = 2.4e-2,
+                 .lut3d = 2.4e-2,
                  .reason =
                      "matrices with cancellation amplify the rounding of the tables; the looks "
                      "need a 3D LUT, because they saturate about a luma from before their power"};
     // Punchy moves black below 0 before it is decoded, which removes the lifted black.
-    op.deviations = {{DocumentedDifference::Kind::black, 2.5e-6, ""},
-                     {DocumentedDifference::Kind::black, 5.2e-5, "golden"},
-                     {DocumentedDifference::Kind::black, 0, "punchy"},
-                     {DocumentedDifference::Kind::crushes_black, 0.0020, "punchy"},
-                     {DocumentedDifference::Kind::never_reaches_white, 0.961, ""},
-                     {DocumentedDifference::Kind::never_reaches_white, -0.0052, "golden"},
-                     {DocumentedDifference::Kind::never_reaches_white, 0.942, "punchy"},
-                     {DocumentedDifference::Kind::exceeds_white, 1.24, "golden"},
-                     {DocumentedDifference::Kind::not_monotone, 0.00021, "golden"},
-                     {DocumentedDifference::Kind::tints_gray, 1, "golden"}};
+    op.differences = {{DocumentedDifference::Kind::black, 2.5e-6, ""},
+                      {DocumentedDifference::Kind::black, 5.2e-5, "golden"},
+                      {DocumentedDifference::Kind::black, 0, "punchy"},
+                      {DocumentedDifference::Kind::crushes_black, 0.0020, "punchy"},
+                      {DocumentedDifference::Kind::never_reaches_white, 0.961, ""},
+                      {DocumentedDifference::Kind::never_reaches_white, -0.0052, "golden"},
+                      {DocumentedDifference::Kind::never_reaches_white, 0.942, "punchy"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.24, "golden"},
+                      {DocumentedDifference::Kind::not_monotone, 0.00021, "golden"},
+                      {DocumentedDifference::Kind::tints_gray, 1, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
         Pipeline stages = {
             limit_to_positive(), MatrixStage{kAgxInsetRec2020, "inset"}, limit_to_shaper(),
@@ -319,8 +319,8 @@ Operator godot44() {
     op.dialects = "AgX";
     op.negatives = "set to 2e-10, before the first matrix";
     op.warnings = {"grays get darker by 4e-6 at scene-linear 16.3, where the shaper ends"};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.0003, ""},
-                     {DocumentedDifference::Kind::not_monotone, 16, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.0003, ""},
+                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
         // clang-format off
         // Rec.709 to Rec.2020 and Blender's inset in one; its outset and the inverse in one.

@@ -596,16 +596,16 @@ std::vector<Operator> define_agx_blender() {
         "Blender multiplies its HDR view by 2.03 when it shows or saves it"};
     // The 3D LUT of the looks' guard rail ends 10 stops below mid gray, and these looks lift that
     // value.
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"},
-                     {DocumentedDifference::Kind::black, 0.000105, "punchy"},
-                     {DocumentedDifference::Kind::black, 1.85e-5, "medium_low_contrast"},
-                     {DocumentedDifference::Kind::black, 0.000128, "low_contrast"},
-                     {DocumentedDifference::Kind::black, 0.000456, "very_low_contrast"}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"},
+                      {DocumentedDifference::Kind::black, 0.000105, "punchy"},
+                      {DocumentedDifference::Kind::black, 1.85e-5, "medium_low_contrast"},
+                      {DocumentedDifference::Kind::black, 0.000128, "low_contrast"},
+                      {DocumentedDifference::Kind::black, 0.000456, "very_low_contrast"}};
     op.bounds = {.simd = 1e-5,
                  .simd_goal = 1e-5,
                  .ocio_cpu = 8e-5,
                  .ocio_gpu = 2e-4,
-                 .cube = 0.11,
+                 .lut3d = 0.11,
                  .reason =
                      "simd: twice as fast as with 1e-6; hdr: HLG codes decode to values up to 10; "
                      "colors far outside Rec.709 suffer from cancellation; formula: a 3D LUT "

@@ -211,7 +211,7 @@ Operator bt2446a() {
     op.license = "published formula";
     op.parameters = with_limits({});
     // 1.0770 Y and -1.1510 Y^2 + 2.7811 Y - 0.6302 differ at Y = 0.7399.
-    op.deviations = {{DocumentedDifference::Kind::jumps, 0.00104, ""}};
+    op.differences = {{DocumentedDifference::Kind::jumps, 0.00104, ""}};
     // 0.001 display-linear, amplified by a matrix and by sRGB's slope at black.
     op.bounds = {.ocio_cpu = 5e-3,
                  .ocio_gpu = 5e-3,

@@ -103,7 +103,7 @@ Operator logarithmic() {
                           "factor on the scene value in the logarithm; larger is flatter"),
          maximum_luminance("maximum", 100, 1e-6, "scene value shown as display white")});
     op.warnings = {kChannelsMayClip};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 2.4, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 2.4, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr scale = p.expr("p");
         const Expr at_maximum = named("at_maximum", log_of_1_plus(scale * p.expr("maximum")));
@@ -130,7 +130,7 @@ Operator log_tonemap() {
                                        "share of the S-curve x^2 (3 - 2x), per channel, after a "
                                        "limit to [0, 1] (0: no curve and no limit)")});
     op.warnings = {kChannelsMayClip};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 3.9, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 3.9, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr contrast = p.expr("contrast");
@@ -161,7 +161,7 @@ Operator exponentiation() {
         {number_parameter("p", "", 0.5, 0.01, 1, "exponent; smaller is flatter, 1 is linear"),
          maximum_luminance("maximum", 100, 1e-6, "scene value shown as display white")});
     op.warnings = {kChannelsMayClip};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.bounds.ocio_cpu = op.bounds.ocio_gpu = 2e-3;
     op.bounds.reason = "infinite slope at black, and half floats end at 6e-8";
     op.build = [](const Params& p) -> Pipeline {

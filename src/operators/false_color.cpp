@@ -46,9 +46,9 @@ std::vector<Operator> define_false_color() {
     op.license = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.is_diagnostic = true;
-    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0018, ""},
-                     {DocumentedDifference::Kind::not_monotone, 4.3, ""},
-                     {DocumentedDifference::Kind::tints_gray, 0.75, ""}};
+    op.differences = {{DocumentedDifference::Kind::crushes_black, 0.0018, ""},
+                      {DocumentedDifference::Kind::not_monotone, 4.3, ""},
+                      {DocumentedDifference::Kind::tints_gray, 0.75, ""}};
     op.bounds = {.ocio_cpu = 2e-5,
                  .ocio_gpu = 2e-5,
                  .reason = "one color blends into the next within a quarter of a stop"};

@@ -73,7 +73,7 @@ Operator hejl_burgess_dawson() {
     op.code_power = kBakedPower;
     op.dialects = "Hejl";
     op.parameters = with_apply("channels");
-    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.004, ""}};
+    op.differences = {{DocumentedDifference::Kind::crushes_black, 0.004, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr f = hejl_rational(max(Expr::input() - 0.004, 0));
         return tone_curve_pipeline({.f = f, .code_power = kBakedPower}, p);
@@ -99,9 +99,9 @@ Operator hejl_2015() {
         with_apply("channels", {number_parameter("white", "scene-linear", 11.2, 0.1, kHalfMax,
                                                  "lowest scene value shown as display white")});
     op.warnings = {"other sources quote 1.425 where BakingLab and this operator use 1.435"};
-    op.deviations = {{DocumentedDifference::Kind::black, -0.00072, ""},
-                     {DocumentedDifference::Kind::crushes_black, 0.0046, ""},
-                     {DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
+    op.differences = {{DocumentedDifference::Kind::black, -0.00072, ""},
+                      {DocumentedDifference::Kind::crushes_black, 0.0046, ""},
+                      {DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const auto f = [](const Expr& v) {
             const Expr a = named("a", 1.435 * v + 0.05);
@@ -197,7 +197,7 @@ Operator lottes() {
          number_parameter("mid_out", "display-linear", 0.267, 0.01, 0.99,
                           "display-linear value of mid gray")});
     op.warnings = {"with a shoulder above 1, highlights above some scene value get darker again"};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.4, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.4, ""}};
     op.bounds = {.simd = 1e-5,
                  .reason =
                      "with a shoulder above 1 the curve may rise far above white and fall again, "
@@ -249,7 +249,7 @@ Operator filament_generic() {
                           "display-linear value of mid gray"),
          number_parameter("hdr_max", "scene-linear", 10, 1, kHalfMax,
                           "scene value shown as display white")});
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = filament_curve(p)}, p);
     };
@@ -328,9 +328,9 @@ Operator day() {
              number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
                               "scene value that is the unit of white, black and crossover"),
              "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
-    op.deviations = {{DocumentedDifference::Kind::black, -0.0040, ""},
-                     {DocumentedDifference::Kind::crushes_black, 0.099, ""},
-                     {DocumentedDifference::Kind::exceeds_white, 1.2, ""}};
+    op.differences = {{DocumentedDifference::Kind::black, -0.0040, ""},
+                      {DocumentedDifference::Kind::crushes_black, 0.099, ""},
+                      {DocumentedDifference::Kind::exceeds_white, 1.2, ""}};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = day_curve(p)}, p);
     };
@@ -358,7 +358,7 @@ Operator schlick() {
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {
         "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip"};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""}};
     op.build = [](const Params& params) -> Pipeline {
         const Expr x = Expr::input();
         const Expr p = params.expr("p");
@@ -400,7 +400,7 @@ Operator toe() {
     op.warnings = {"Tonewright defines this formula, because neither game published its own"};
     op.bounds.ocio_cpu = op.bounds.ocio_gpu = 5e-5;
     op.bounds.reason = "the slope jumps at the end of the ramp, between two half floats";
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr width = p.expr("width");

@@ -106,7 +106,7 @@ std::vector<Operator> define_frostbite() {
         "T. Stachowiak's shadertoy";
     op.license = "published formula; none of its code is used";
     op.negatives = kNegativesClampAtZero;
-    op.bounds = {.cube = 1.2e-2, .reason = "3D LUT: chroma falls to 0 within a stop about white"};
+    op.bounds = {.lut3d = 1.2e-2, .reason = "3D LUT: chroma falls to 0 within a stop about white"};
     op.parameters = {number_parameter("linear_end", "scene-linear", 0.25, 0.01, 0.99,
                                       "end of the linear segment of the compression")};
     op.build = [](const Params& p) -> Pipeline {

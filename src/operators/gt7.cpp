@@ -111,7 +111,7 @@ std::vector<Operator> define_gt7() {
     op.license = "MIT";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Gran Turismo";
-    op.bounds = {.cube = 0.26, .reason = "3D LUT: highlights lose their chroma within 1.4 stops"};
+    op.bounds = {.lut3d = 0.26, .reason = "3D LUT: highlights lose their chroma within 1.4 stops"};
     op.working = kRec2020;
     op.parameters = fixed_parameters({
         sdr_or_hdr_parameter("sdr: 1 is the peak of a display of 250 cd/m2; hdr: 1 is 100 cd/m2"),
@@ -126,7 +126,7 @@ std::vector<Operator> define_gt7() {
         "scene-linear 1 stands for 100 cd/m2: expose about 1.3 stops more than for "
         "operators that show 1 near white",
         "SDR displays clip output=hdr at 100 cd/m2"};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
     op.peak = [](const Params& p) {
         return p.choice("output") == "hdr" ? p.number("peak") / kReferenceLuminance : 1;
     };

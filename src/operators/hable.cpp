@@ -96,9 +96,9 @@ Operator uncharted() {
                     {"linear_strength", "0.3"},
                     {"toe_numerator", "0.01"},
                     {"white", "2"}}}};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.3, ""},
-                     {DocumentedDifference::Kind::exceeds_white, 1.1, "gdc"},
-                     {DocumentedDifference::Kind::exceeds_white, 1.7, "godot"}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.3, ""},
+                      {DocumentedDifference::Kind::exceeds_white, 1.1, "gdc"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.7, "godot"}};
     op.build = [](const Params& p) -> Pipeline {
         return hable_pipeline({.A = p.expr("shoulder_strength"),
                                .B = p.expr("linear_strength"),
@@ -135,7 +135,7 @@ Operator gdc() {
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
     op.parameters = with_apply("channels", {white(), exposure_bias(1)});
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""}};
     op.build = [](const Params& p) -> Pipeline {
         return hable_pipeline({.A = 0.22, .B = 0.30, .C = 0.10, .D = 0.20, .E = 0.01, .F = 0.30},
                               p);
@@ -263,8 +263,8 @@ Operator piecewise() {
                     {"shoulder_strength", "4"},
                     {"shoulder_length", "0.7"},
                     {"shoulder_angle", "0.4"}}}};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.1, "film"},
-                     {DocumentedDifference::Kind::exceeds_white, 1.0, "soft"}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.1, "film"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.0, "soft"}};
     op.build = [](const Params& p) -> Pipeline {
         const double brightness = p.number("max_brightness");
         const Expr x = Expr::input() / brightness;

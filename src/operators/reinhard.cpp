@@ -90,7 +90,7 @@ Operator extended() {
                                                  "lowest scene value shown as display white")});
     op.presets = {{"luminance", "Reinhard Extended on luminance", {{"apply", "luminance"}}},
                   {"max", "Reinhard Extended on the largest channel", {{"apply", "max"}}}};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr white = p.expr("white");
@@ -126,7 +126,7 @@ Operator nebula() {
     op.warnings = {
         "programs that use the printed code show another picture, quadratic near black, because "
         "they do not divide by the luminance"};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr white = p.expr("maximum");
         const Expr scaled =
@@ -142,7 +142,7 @@ Operator nebula_as_printed() {
     Operator op = defect_of("nebula", "nebula_as_printed", "the post on HDR of the Nebula engine",
                             "it does not divide by the luminance, so the picture is quadratic near "
                             "black and has no upper bound");
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params&) -> Pipeline {
         const Expr luminance = Expr::input();
         const Expr scaled = named("scaled", luminance * (0.6 / 0.5));
@@ -192,7 +192,7 @@ Operator constant_luminance() {
     op.dialects = "Reinhard";
     op.warnings = {
         "two channels above 1 lose the excess that they pass to each other, and its luminance"};
-    op.bounds = {.cube = 0.25,
+    op.bounds = {.lut3d = 0.25,
                  .reason =
                      "the slope jumps where a channel starts to pass on its excess, and no node of "
                      "a 3D LUT is there"};
@@ -266,8 +266,8 @@ Operator devlin() {
              "mean of the picture; only with light_adaptation below 1",
              [](const SceneStatistics& s) { return s.mean_luminance; })};
     op.warnings = {"contrast=1 with light_adaptation=1 shows all grays except black alike"};
-    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.99, ""}};
-    op.bounds.cube = 0.05;
+    op.differences = {{DocumentedDifference::Kind::never_reaches_white, 0.99, ""}};
+    op.bounds.lut3d = 0.05;
     op.bounds.reason =
         "infinite slope at black, and half floats end at 6e-8; elsewhere the error of a 3D LUT";
     op.build = [](const Params& p) -> Pipeline {

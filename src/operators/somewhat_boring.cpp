@@ -51,8 +51,9 @@ std::vector<Operator> define_somewhat_boring() {
         "T. Stachowiak, Somewhat boring display transform, in Bevy: tonemapping_shared.wgsl";
     op.license = "MIT or Apache-2.0";
     op.negatives = kNegativesClampAtZero;
-    op.bounds = {.cube = 1.4e-2, .reason = "3D LUT: the slope jumps where the desaturation starts"};
-    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.97, ""}};
+    op.bounds = {.lut3d = 1.4e-2,
+                 .reason = "3D LUT: the slope jumps where the desaturation starts"};
+    op.differences = {{DocumentedDifference::Kind::never_reaches_white, 0.97, ""}};
     op.build = [](const Params&) -> Pipeline { return {limit_to_positive(), boring_mapping()}; };
     return {op};
 }

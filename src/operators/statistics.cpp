@@ -84,7 +84,7 @@ Operator drago() {
                              "maximum luminance",
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {kChannelsMayClip};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.5, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.5, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr bias = p.expr("bias");
         const Expr maximum = p.expr("maximum");
@@ -117,7 +117,7 @@ Operator ward() {
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply("luminance", {display_max(80), log_average(0.5)});
     op.warnings = {kScenesAreLuminances};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr display = p.expr("display_max");
         const Expr threshold_ratio =
@@ -159,8 +159,8 @@ Operator tumblin_rushmeier() {
                                                  "contrast of the display: white divided by black"),
                                 log_average(0.5)});
     op.warnings = {kScenesAreLuminances};
-    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.060, ""},
-                     {DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.differences = {{DocumentedDifference::Kind::crushes_black, 0.060, ""},
+                      {DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr display = p.expr("display_max");
         const Expr contrast = p.expr("contrast_max");
@@ -258,7 +258,7 @@ DeclaredBounds rod_bounds() {
     return {.simd = 2e-6,
             .ocio_cpu = 1.5e-4,
             .ocio_gpu = 6e-3,
-            .cube = 0.3,
+            .lut3d = 0.3,
             .reason = "the matrix from the rods' coordinates to RGB cancels near black"};
 }
 
@@ -279,7 +279,7 @@ Operator ferwerda() {
     op.parameters = rod_parameters();
     op.bounds = rod_bounds();
     op.warnings = {kScenesAreLuminances};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr La = p.expr("photopic_adaptation");
         const Expr k = min(max(1 - (La / 2 - 0.01) / (10 - 0.01), 0), 1);
@@ -311,8 +311,8 @@ Operator durand_dorsey_rods() {
     shift("green", 0.97);
     shift("blue", 1.27);
     op.warnings = {kScenesAreLuminances};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""},
-                     {DocumentedDifference::Kind::tints_gray, 0.049, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""},
+                      {DocumentedDifference::Kind::tints_gray, 0.049, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr La = p.expr("scotopic_adaptation");
         const Expr k = max((100 - La / 4) / (100 + La), 0);

@@ -60,7 +60,7 @@ Operator gran_turismo() {
     op.presets = {
         {"hdr", "HDR display with a peak of ten times paper white", {{"max_brightness", "10"}}}};
     op.warnings = {"SDR displays clip at paper white if max_brightness is above 1"};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
     op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.build = [](const Params& params) -> Pipeline {
         const Expr P = params.expr("max_brightness");

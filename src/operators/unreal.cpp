@@ -99,7 +99,7 @@ std::vector<Operator> define_unreal() {
     op.license = "Epic EULA; formula and constants as facts; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Unreal";
-    op.bounds = {.cube = 7e-3,
+    op.bounds = {.lut3d = 7e-3,
                  .reason = "OpenColorIO's fixed functions weight hues near red differently"};
     op.working = kAP1;
     op.parameters = fixed_parameters({
@@ -121,8 +121,8 @@ std::vector<Operator> define_unreal() {
                     {"shoulder", "0.22"},
                     {"black_clip", "0"},
                     {"white_clip", "0.025"}}}};
-    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.04, ""},
-                     {DocumentedDifference::Kind::exceeds_white, 1.025, "legacy"}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.04, ""},
+                      {DocumentedDifference::Kind::exceeds_white, 1.025, "legacy"}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr f = film_curve(p.number("slope"), p.number("toe"), p.number("shoulder"),
                                   p.number("black_clip"), p.number("white_clip"));

@@ -54,7 +54,7 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 
-/// As on the command line.
+/// Text of a value, as it would be on the command line.
 std::string text_of(const py::handle& value) {
     if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "yes" : "no";
     std::string text = py::str(value);
@@ -494,8 +494,7 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
             operations = chain.operations;
             return;
         }
-        const BakedLut baked =
-            bake_lut(request, LutNodes::automatic, reader && is_trilinear(*reader));
+        const BakedLut baked = bake_lut(request, LutNodes::automatic, interpolation_of(reader));
         error = baked.error;
         request.size = baked.lut.size;
         request.dimension = baked.lut.dimension == 3 ? LutDimension::three : LutDimension::one;
@@ -556,7 +555,7 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
     write.subsampling = subsampling;
     write.verifies = verifies;
     const py::gil_scoped_release release;
-    write.says_how = true;
+    write.write_provenance = true;
     write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
     ReadOptions read = {.subimage = subimage, .layer = layer, .max_pixels = max_pixels};
     read.resize = resize;
@@ -564,7 +563,7 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
     tonemap_file(Tonemapper(options), in, out, write, read, nthreads);
 }
 
-/// What the header of a picture says; the keys of `tonewright info --json`.
+/// Facts in the header of a picture, with the keys of `tonewright info --json`.
 py::dict describe_file(const std::string& path, const std::string& input,
                        const std::string& subimage, const std::string& layer) {
     ReadOptions read = {.subimage = subimage, .layer = layer};

@@ -137,7 +137,7 @@ ColorRun start_lut(const BackendInput& input) {
                 interpolate(*lut,
                             (*encode)({static_cast<double>(in[i]), static_cast<double>(in[i + 1]),
                                        static_cast<double>(in[i + 2])}),
-                            false);
+                            LutInterpolation::tetrahedral);
             for (std::size_t c = 0; c < 3; ++c)
                 out[i + c] = static_cast<float>(color[c]);
         }
@@ -192,11 +192,11 @@ BackendBounds backend_bounds(const View& view, const Pipeline& pipeline, const L
     declare(b.cpu, declared.ocio_cpu, declared.ocio_cpu > 0);
     declare(b.gpu, declared.ocio_gpu, declared.ocio_gpu > 0);
     if (!lowered.is_exact) {  // 65^3 cube: one code of 10 bits
-        const double declared_cube = find_display(view.display).is_hdr && declared.cube_hdr > 0
-                                         ? declared.cube_hdr
-                                         : declared.cube;
-        const double cube = declared_cube > 0 ? declared_cube : 1.0 / 1023;
-        allow(cube, cube);
+        const double declared_3d = find_display(view.display).is_hdr && declared.lut3d_hdr > 0
+                                       ? declared.lut3d_hdr
+                                       : declared.lut3d;
+        const double error_3d = declared_3d > 0 ? declared_3d : 1.0 / 1023;
+        allow(error_3d, error_3d);
     }
     return b;
 }

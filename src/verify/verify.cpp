@@ -365,14 +365,14 @@ SampleSet choose_samples(const VerifyOptions& options) {
 
 /// The views of a config with the operators.
 std::vector<ConfigOptions::CustomView> views_of_operators(const std::vector<View>& views) {
-    std::vector<ConfigOptions::CustomView> wanted;
+    std::vector<ConfigOptions::CustomView> requested;
     std::set<std::string> names;
     for (const View& view : views) {
         const std::string name = view_name(view.op);
-        if (!name.empty() && names.insert(name).second) wanted.push_back({name, view.op});
+        if (!name.empty() && names.insert(name).second) requested.push_back({name, view.op});
     }
-    if (wanted.empty()) wanted.push_back({views.front().op.op->view, views.front().op});
-    return wanted;
+    if (requested.empty()) requested.push_back({views.front().op.op->view, views.front().op});
+    return requested;
 }
 
 ShaderRuns choose_shaders(const VerifyOptions& options) {
@@ -394,7 +394,7 @@ class Verification {
         const std::vector<View> views = choose_views(options_, config_);
         shaders_ = choose_shaders(options_);
         samples_ = choose_samples(options_);
-        few_ = every_nth(samples_, 20);
+        every_20th_ = every_nth(samples_, 20);
         shown_.resize(samples_.rgb.size());
         std::optional<TemporaryConfig> fresh;
         if (!config_) {
@@ -483,7 +483,7 @@ class Verification {
     /// The engine with each instruction set of this processor, the best one first.
     void add_engines(const Subject& subject, const Comparison& comparison) {
         const Backend& backend = find_backend(Backend::Id::simd);
-        const Comparison few_compared(subject.view, few_);
+        const Comparison compared_20th(subject.view, every_20th_);
         const double goal = subject.view.op.op->bounds.simd_goal;
         const std::vector<std::string> targets = SimdEngine::targets();
         std::vector<SimdEngine> engines;
@@ -495,9 +495,9 @@ class Verification {
         for (std::size_t t = 0; t < engines.size(); ++t) {
             // SCALAR takes thirty times as long as the others, with the same code.
             const bool is_slow = targets[t] == "SCALAR";
-            const SampleSet& taken = is_slow ? few_ : samples_;
+            const SampleSet& taken = is_slow ? every_20th_ : samples_;
             engines[t].run_rgb(taken.rgb.data(), shown_.data(), taken.size());
-            add_measured(subject, is_slow ? few_compared : comparison, backend,
+            add_measured(subject, is_slow ? compared_20th : comparison, backend,
                          row_of(subject.view, backend.name + " " + targets[t]));
         }
     }
@@ -562,7 +562,7 @@ class Verification {
     OCIO::ConstConfigRcPtr config_;
     ShaderRuns shaders_;
     SampleSet samples_;
-    SampleSet few_;
+    SampleSet every_20th_;
     std::vector<float> shown_;
     std::vector<ParityRow> rows_;
 };

@@ -259,7 +259,7 @@ TEST_P(Law, ChecksFindWhatIsDeclaredAndNoMore) {
     const Differences declared = declared_differences(GetParam());
     for (const auto& [kind, value] : measured_differences(resolve(GetParam())))
         EXPECT_TRUE(declared.contains(kind)) << to_string(DocumentedDifference{kind, value, ""});
-    for (const DocumentedDifference& d : op().deviations) {
+    for (const DocumentedDifference& d : op().differences) {
         const auto names = [&](const auto& items) {
             return std::any_of(items.begin(), items.end(),
                                [&](const auto& item) { return item.id == d.when; });
@@ -394,11 +394,11 @@ TEST_P(CurveLaw, IsInvertedNumerically) {
         const double x = ramp[i];
         if (x > kHalfMax) continue;
         const double y = evaluate(f, x);
-        // What the rounding of y may move x by, relative: some 2^-53 of the formula's terms, which
-        // are of the size of 1 (Hable's cancel in the dark), over the slope.
-        // PQ's power of 78.84 multiplies them by a hundred.
+        // The rounding of y may move x by this much, relative: some 2^-53 of the formula's terms,
+        // which are of the size of 1 (Hable's cancel in the dark), over the slope. PQ's power of
+        // 78.84 multiplies them by a hundred.
         const double uncertainty = 1e-13 * std::max(1.0, std::fabs(y)) / (evaluate(slope, x) * x);
-        // Where the curve is flat (a clamp, a shoulder near its end) any x will do.
+        // If the curve is flat (a clamp, a shoulder near its end), any x will do.
         if (!(uncertainty >= 0 && uncertainty < 1e-6)) continue;
         EXPECT_NEAR(inverse_at(f, y, 0, kHalfMax) / x, 1, uncertainty + 1e-15) << "at " << x;
         ++inverted;
@@ -506,7 +506,7 @@ TEST_P(ParameterLaw, AcceptedValuesGiveFiniteResults) {
         std::any_of(usual.code().begin(), usual.code().end(),
                     [](const TapeInstruction& step) { return step.op == ExprOp::grid; });
     const std::size_t wanted = is_large ? count_of(8U, 2U) : count_of(50U, 6U);
-    // Of two peaks and two blacks hardly one random set in twenty is in order.
+    // Hardly one random set in twenty has two peaks and two blacks in order.
     for (int round = 0; round < 600 && accepted < wanted; ++round) {
         const Settings settings = random_settings(op, random);
         if (!tried.insert(settings).second) continue;
@@ -614,7 +614,7 @@ TEST(Laws, CoverEveryPresetAndLook) {
     EXPECT_EQ(all_variants().size(), expected);
 }
 
-// Of every display color, those that the operator never shows included.
+// Inverses of every display color, those that the operator never shows included.
 TEST(Laws, InversesAreFinite) {
     std::size_t count = 0;
     for (const Operator& op : all_operators()) {

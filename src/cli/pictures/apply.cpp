@@ -65,7 +65,7 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
     write.subsampling = options.subsampling;
     write.verifies = options.verifies_output;
     if (options.picture.max_pixels) write.max_pixels = *options.picture.max_pixels;
-    write.says_how = !options.has_no_metadata;
+    write.write_provenance = !options.has_no_metadata;
     if (write.bits > 0 || options.given.contains("--compression") ||
         options.given.contains("--quality") || options.given.contains("--subsampling"))
         (void)PictureWriter(out, write);
@@ -235,7 +235,7 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
         throw FileError(file.in + ": " + first_line(result.geterror()));
     if (const std::optional<std::string> display = stated_display(options.lut))
         tag_as_shown_on(*display, result.specmod());
-    if (write.says_how) {
+    if (write.write_provenance) {
         const std::string lut_name = std::filesystem::path(options.lut.file).filename().string();
         const std::string size = options.resize.empty() ? "" : ", resize " + options.resize;
         result.specmod().attribute(
@@ -318,7 +318,7 @@ int run_on_files(ApplyOptions options) {
         throw Error("apply: --operator has no value; expected --operator NAME");
     ApplyFiles files = files_of(options);
     if (!options.lut.file.empty()) return apply_lut(options, files);
-    take_lut_options("apply", options.lut, options, true);
+    take_lut_options("apply", options.lut, options, LutOption::yes);
     std::string op = options.is_false_color ? "false_color" : options.op;
     if (op.empty()) op = kDefaultOperator;
     TonemapOptions tonemap;

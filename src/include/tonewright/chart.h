@@ -17,8 +17,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 ///
 /// @param width   at least 320
 /// @param height  at least 180. The layout scales; it was designed for 1536 x 864. Labels that
-/// would
-///                be too small are left out.
+///                would be too small are left out.
 /// @throws Error  size out of range
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf make_chart(int width = 1536, int height = 864);
 

@@ -96,7 +96,7 @@ struct ImportedParameter {
     std::optional<double> max = {};
 };
 
-/// How to read a shader as an operator.
+/// Options for reading a shader as an operator.
 struct ShaderImport {
     /// Name of `float f(float)` or `vec3 f(vec3)`; empty: the last one that no other function
     /// calls.

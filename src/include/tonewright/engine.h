@@ -72,8 +72,7 @@ class TONEWRIGHT_API SimdEngine {
     ///                   operator declares the bound of its views (DeclaredBounds::simd_goal).
     /// @param target  the instruction set, one of targets(); "" for the best
     /// @throws Error  the machine has no such target, or the pipeline has more values at a time
-    /// than
-    ///                a tile holds; exceptions of Grid::nodes()
+    ///                than a tile holds; exceptions of Grid::nodes()
     explicit SimdEngine(const Pipeline& pipeline, double max_error = kSimdError,
                         std::string_view target = {});
     /// An engine for all values of the pipeline's uniforms. Values that depend on uniforms only are
@@ -129,8 +128,8 @@ class TONEWRIGHT_API SimdEngine {
                                                             const ResolvedOperator& resolved,
                                                             const SceneStatistics& statistics);
 
-/// How SimdEngine compiles a pipeline, step by step, for developers: expressions, precision,
-/// curves, program and machine code. The format of the text may change.
+/// Explains the compilation of a pipeline by SimdEngine step by step, for developers: expressions,
+/// precision, curves, program and machine code. The format of the text may change.
 [[nodiscard]] TONEWRIGHT_API std::string explain(const Pipeline& pipeline,
                                                  const LiveUniforms& uniforms = {},
                                                  double max_error = kSimdError,

@@ -40,7 +40,8 @@ struct TONEWRIGHT_API Problem {
     int error_number = 0;
 };
 
-/// How an application writes a parameter of a request. Default: `size is 3`, and `size=65`.
+/// Style in which an application writes a parameter of a request. Default: `size is 3`, and
+/// `size=65`.
 struct MessageStyle {
     /// Before "is" and a value.
     std::string (*name)(std::string_view parameter) = nullptr;
@@ -55,7 +56,7 @@ struct MessageStyle {
 /// A text with its references written in a style.
 [[nodiscard]] TONEWRIGHT_API std::string render(std::string_view text,
                                                 const MessageStyle& style = {});
-/// As render(), but the references stay: for a message that has this one in it.
+/// render() without replacing references: for a message that contains this one.
 [[nodiscard]] TONEWRIGHT_API std::string unrendered(const Problem& problem);
 /// The same problem in a larger thing, such as a file.
 [[nodiscard]] TONEWRIGHT_API Problem within(std::string_view what, Problem problem);

@@ -8,7 +8,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What the numbers of a picture file are if its header does not state it.
+/// Meaning of a picture file's numbers if its header does not state it.
 enum class FormatMeaning : unsigned char {
     /// Light by the format's definition (OpenEXR, Radiance HDR, PFM).
     linear,

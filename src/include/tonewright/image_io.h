@@ -67,7 +67,7 @@ struct ReadOptions {
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf read_image(const std::string& path,
                                                        double max_pixels = kMaxPixels);
 
-/// How a picture file is written.
+/// Options for writing a picture file.
 struct WriteOptions {
     /// Pixel type of the file; UNKNOWN: the buffer's, or OIIO's replacement for this format (8 bits
     /// for a float picture as PNG or JPEG, but 16 for PNG in PQ or HLG).
@@ -89,10 +89,10 @@ struct WriteOptions {
     /// and oiiotool's `--over`. The result is color + (1 - alpha) background in code values,
     /// because browsers and editors show a picture with alpha that way.
     std::array<float, 3> background = {};
-    /// As oiiotool's `--compression`: a method of the format, with `:quality` if it has one. Empty:
-    /// the source's if the format has it, else the format's default.
+    /// A method of the format, with `:quality` if it has one, like oiiotool's `--compression`.
+    /// Empty: the source's if the format has it, else the format's default.
     std::string compression = {};
-    /// As oiiotool's `--quality`, [1, 100]. 0: the format's default.
+    /// Quality, [1, 100], like oiiotool's `--quality`. 0: the format's default.
     int quality = 0;
     /// Resolution of a JPEG file's chroma by oiiotool's names of `jpeg:subsampling`: 4:4:4, 4:2:2,
     /// 4:2:0 or 4:1:1. Empty: 4:4:4 from quality 90 on, below that 4:2:0.
@@ -106,7 +106,7 @@ struct WriteOptions {
     /// tonemap_file() records the provenance: `Software` has version, operator, parameters,
     /// exposure and display. OpenEXR and PNG files also get the attributes `tonewright:operator`,
     /// `tonewright:exposure`, `tonewright:resize` and `tonewright:display`.
-    bool says_how = false;
+    bool write_provenance = false;
     /// Receives warnings about the file, in one line without its name, before the file gets its
     /// final name. An exception stops the writing. @see render
     std::function<void(const std::string&)> warn = {};
@@ -132,8 +132,7 @@ struct WriteOptions {
 ///
 /// @throws Error      compression or quality that the format does not have
 /// @throws FileError  unknown extension, folder missing or not writable, disk full, ... One line;
-/// no
-///                    file is left behind.
+///                    no file is left behind.
 TONEWRIGHT_API void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
                                            const WriteOptions& options);
 TONEWRIGHT_API void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,

@@ -29,12 +29,12 @@ struct InputEncoding {
 
 /// `acescct`, `logc3` (ARRI, EI 800), `logc4`, `slog3` (Sony), `davinci` (DaVinci Intermediate),
 /// `unity_logc`, `unreal_log`, `srgb`, `agx_log` (E-Gamut, log2 from -10 to 15 stops: the grid of
-/// Blender's AgX); `pq[:WHITE]` = SMPTE ST 2084, scene-linear 1 at WHITE cd/m2
-/// (default 100); `hlg[:WHITE]` = HLG of ITU-R BT.2100, the scene light of each channel by its
-/// inverse OETF, where scene-linear 1 is the gray that an HLG display of 1000 cd/m2 shows at WHITE
-/// cd/m2 (default 100), without the display's OOTF, which mixes channels; `log2[:LO:HI]` = log2 of
-/// scene-linear over 0.18, LO..HI stops (default -10:6.5); `reinhard` = x/(x + 1) of scene-linear
-/// x, up to 65504, as in Tony McMapface; `linear[:LO:HI]` = scene-linear (default 0:1).
+/// Blender's AgX); `pq[:WHITE]` = SMPTE ST 2084, scene-linear 1 at WHITE cd/m2 (default 100);
+/// `hlg[:WHITE]` = HLG of ITU-R BT.2100, the scene light of each channel by its inverse OETF, where
+/// scene-linear 1 is the gray that an HLG display of 1000 cd/m2 shows at WHITE cd/m2 (default 100),
+/// without the display's OOTF, which mixes channels; `log2[:LO:HI]` = log2 of scene-linear over
+/// 0.18, LO..HI stops (default -10:6.5); `reinhard` = x/(x + 1) of scene-linear x, up to 65504, as
+/// in Tony McMapface; `linear[:LO:HI]` = scene-linear (default 0:1).
 /// @throws Error  unknown name; parameters that are not numbers or out of range
 [[nodiscard]] TONEWRIGHT_API InputEncoding parse_input_encoding(std::string_view text);
 /// Names without parameters.

@@ -47,9 +47,13 @@ enum class LutFormat : unsigned char {
 /// True if the LUT takes scene-linear input, which a 1D table before the 3D LUT encodes.
 [[nodiscard]] TONEWRIGHT_API bool has_shaper(LutFormat format);
 
+/// Interpolation of 3D LUTs; 1D tables are linear. Automatic: as the file says (CLF and CTF),
+/// otherwise tetrahedral.
+enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear };
+
 enum class LutDimension : unsigned char { automatic, one, three };
 
-/// What to bake.
+/// A LUT to bake.
 struct LutRequest {
     View view;
     InputEncoding encoding;
@@ -117,8 +121,7 @@ struct LutError {
 
 /// A LUT whose nodes are samples of the view.
 /// @throws Error  a 3D LUT of linear input (it would clip and band); a 1D table of a view that
-/// mixes
-///                channels; a size out of range; a format without that dimension
+///                mixes channels; a size out of range; a format without that dimension
 [[nodiscard]] TONEWRIGHT_API Lut sample_lut(const LutRequest& request);
 
 /// A 3D LUT whose nodes are fitted for the least error between them. It is not always nearer to the
@@ -132,15 +135,16 @@ struct LutError {
                                          double photograph_share = 0,
                                          const std::function<void(Lut&)>& constrain = {});
 
-/// Output of the LUT for its input `rgb` in [0, 1] (for a half-domain table: scene-linear). Linear
-/// in 1D; tetrahedral or trilinear in 3D.
-[[nodiscard]] TONEWRIGHT_API Vector3 interpolate(const Lut& lut, const Vector3& rgb,
-                                                 bool trilinear = false);
+/// Output of the LUT for its input `rgb` in [0, 1] (for a half-domain table: scene-linear).
+[[nodiscard]] TONEWRIGHT_API Vector3
+interpolate(const Lut& lut, const Vector3& rgb,
+            LutInterpolation interpolation = LutInterpolation::automatic);
 
 /// Measures on the standard sample set inside the encoding's range, and on random inputs of the
 /// LUT. A shaper is resampled as its readers do.
-[[nodiscard]] TONEWRIGHT_API LutError measure_lut(const Lut& lut, const LutRequest& request,
-                                                  bool trilinear = false);
+[[nodiscard]] TONEWRIGHT_API LutError
+measure_lut(const Lut& lut, const LutRequest& request,
+            LutInterpolation interpolation = LutInterpolation::automatic);
 
 /// Behavior of a 3D LUT along rays of rising exposure: the lamps and hues of the test chart (pure
 /// and half-saturated hues, the primaries and secondaries of Rec.709, P3 and Rec.2020), from -12 to
@@ -164,8 +168,9 @@ inline constexpr double kLargestFall = 2.0 / 255;
 /// A LUT with a larger `p999` does not follow the operator in saturated light.
 inline constexpr double kLargestRayError = 0.02;
 /// A 1D table never rings.
-[[nodiscard]] TONEWRIGHT_API LutRinging measure_ringing(const Lut& lut, const LutRequest& request,
-                                                        bool trilinear = false);
+[[nodiscard]] TONEWRIGHT_API LutRinging
+measure_ringing(const Lut& lut, const LutRequest& request,
+                LutInterpolation interpolation = LutInterpolation::automatic);
 [[nodiscard]] TONEWRIGHT_API bool rings(const LutRinging& ringing);
 /// True if the LUT does not ring, and its errors along the rays are within kLargestRayError.
 [[nodiscard]] TONEWRIGHT_API bool follows_operator(const LutRinging& ringing);
@@ -196,8 +201,7 @@ struct LutClipping {
 /// Values of the nodes of a 3D LUT.
 enum class LutNodes : unsigned char {
     /// The nearest to the operator on photographs of those that do not ring: fitted to the colors
-    /// of
-    /// photographs, or sampled. Rings are taken out where photographs have no colors.
+    /// of photographs, or sampled. Rings are taken out where photographs have no colors.
     automatic,
     sampled,
     fitted,
@@ -217,16 +221,15 @@ struct BakedLut {
 };
 
 /// A LUT, rounded as its format requires, and its error.
-/// @param trilinear  the interpolation of its reader: trilinear instead of tetrahedral
+/// @param interpolation  that of its reader
 /// @param max_error  instead of a size: the smallest of 17, 25, 33, 49, 65, 97 and 129 points a
 ///                   side (those that the format allows) with at most this PhotographError::p999
 /// @param largest_size  of those sizes
 /// @throws Error  as sample_lut(); both a size and a max_error; no size meets max_error
-[[nodiscard]] TONEWRIGHT_API BakedLut bake_lut(const LutRequest& request,
-                                               LutNodes nodes = LutNodes::automatic,
-                                               bool trilinear = false,
-                                               std::optional<double> max_error = std::nullopt,
-                                               int largest_size = 129);
+[[nodiscard]] TONEWRIGHT_API BakedLut
+bake_lut(const LutRequest& request, LutNodes nodes = LutNodes::automatic,
+         LutInterpolation interpolation = LutInterpolation::automatic,
+         std::optional<double> max_error = std::nullopt, int largest_size = 129);
 
 /// Rounds the values as the format requires: to integers of LutRequest::bits, or to
 /// LutRequest::decimals.

@@ -71,7 +71,8 @@ TONEWRIGHT_API void check_lut_size(const LutApplication& application, int size);
                                                           std::optional<LutFormat> format,
                                                           const LutApplication* application);
 
-/// True if the application interpolates trilinearly by default.
-[[nodiscard]] TONEWRIGHT_API bool is_trilinear(const LutApplication& host);
+/// Default interpolation of the application.
+/// @param application  null: `automatic`
+[[nodiscard]] TONEWRIGHT_API LutInterpolation interpolation_of(const LutApplication* application);
 
 TONEWRIGHT_NAMESPACE_END

@@ -11,9 +11,6 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Interpolation of 3D LUTs; 1D tables are linear. Automatic: as the file says (CLF and CTF), else
-/// tetrahedral.
-enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear };
 /// @throws Error with the nearest name.
 [[nodiscard]] TONEWRIGHT_API LutInterpolation parse_lut_interpolation(std::string_view text);
 

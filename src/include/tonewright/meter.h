@@ -28,13 +28,14 @@ inline constexpr int kMeterBins = 256;
 struct MeterOptions {
     /// @see TonemapOptions::input
     std::string input = std::string(kAutoInput);
-    /// As in TonemapOptions. Reference whites other than the default are accepted for all pictures.
+    /// @see TonemapOptions::input_units. Reference whites other than the default are accepted for
+    /// all pictures.
     InputUnits input_units = InputUnits::relative;
     double reference_white = kUnitLuminance;
-    /// As in tonemap(). If alpha counts, pixels whose alpha is 0 or not finite are left out, unless
-    /// all are.
+    /// @see TonemapOptions::unpremult. If alpha counts, pixels whose alpha is 0 or not finite are
+    /// left out, unless all are.
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
-    /// How a file is read.
+    /// Options for reading a file.
     ReadOptions read = {};
     /// Pixels to measure, in the picture's coordinates. Default: the data window. Its channels are
     /// ignored.
@@ -87,9 +88,8 @@ struct Metering {
     double maximum = 0;
 
     /// Pixels in each bin. B. Opsenica, "Automatic Exposure Using a Luminance Histogram",
-    /// bruop.github.io, 2019: bin 0
-    /// has luminances below 1e-6, bin i > 0 those with floor(clamp((log2 L - min)/(max - min)) *
-    /// (bins - 2) + 1) = i.
+    /// bruop.github.io, 2019: bin 0 has luminances below 1e-6, bin i > 0 those with
+    /// floor(clamp((log2 L - min)/(max - min)) * (bins - 2) + 1) = i.
     std::vector<std::uint64_t> histogram;
     /// Limits of that histogram: those of the options, or beyond them.
     double histogram_min = 0;
@@ -114,7 +114,7 @@ struct Metering {
                               static_cast<double>(all);
     }
 
-    /// As in measure_scene(): NaN counts as 0, and infinities are limited.
+    /// Statistics of measure_scene(): NaN counts as 0, and infinities are limited.
     SceneStatistics scene;
     std::uint64_t scene_count = 0;
     std::uint64_t scene_lit_count = 0;
@@ -123,8 +123,7 @@ struct Metering {
 /// Measures a picture in one pass.
 ///
 /// @param nthreads  0: OIIO's `threads` attribute. Threads and instruction sets change no bit of
-/// the
-///                  result.
+///                  the result.
 /// @throws Error    bad options; a picture that cannot be read, is deep, or has no color; a region
 ///                  outside the picture
 [[nodiscard]] TONEWRIGHT_API Metering meter(const OIIO::ImageBuf& src,

@@ -48,8 +48,7 @@ struct ConfigModel;
 class TONEWRIGHT_API ConfigPlan {
   public:
     /// @throws Error      unknown views, looks and displays, and names that break applications
-    /// (over
-    ///                    63 bytes, or duplicates)
+    ///                    (over 63 bytes, or duplicates)
     /// @throws FileError  a file of an operator cannot be read
     explicit ConfigPlan(const ConfigOptions& options = {});
 
@@ -112,8 +111,8 @@ struct ExtendedConfig {
         std::vector<std::string> names;
     };
     std::vector<Added> added;
-    /// What `check` cannot run, because the profile of the config is newer than those that the
-    /// linked OpenColorIO reads; empty: nothing. One line.
+    /// One line about the items that `check` cannot run, because the profile of the config is newer
+    /// than those that the linked OpenColorIO reads; empty: it can run all.
     std::string unchecked;
     /// @see ConfigPlan::warnings
     std::vector<std::string> warnings;
@@ -126,8 +125,7 @@ struct ExtendedConfig {
 /// Adds views, looks and output spaces to a user's config, on its displays whose numbers match one
 /// of Tonewright's. The rest of the file stays as it is, with comments and order.
 /// @param options     views (empty, if there are custom ones: none), displays (of the config),
-/// looks,
-///                    custom, exposure_stops
+///                    looks, custom, exposure_stops
 /// @param is_updated  removes the earlier additions first; if all options are empty, repeats the
 ///                    earlier ones
 /// @throws FileError  the config cannot be read, OpenColorIO refuses it, or it lacks an interchange

@@ -280,7 +280,7 @@ struct DocumentedDifference {
 /// Names of the kinds in .tone files and JSON, in the order of Kind: "black", ...
 [[nodiscard]] TONEWRIGHT_API const std::vector<std::string>& difference_names();
 /// "lifts black to 0.0029".
-[[nodiscard]] TONEWRIGHT_API std::string to_string(const DocumentedDifference& deviation);
+[[nodiscard]] TONEWRIGHT_API std::string to_string(const DocumentedDifference& difference);
 
 /// Default error bound of SimdEngine.
 inline constexpr double kSimdError = 1e-6;
@@ -291,8 +291,8 @@ struct DeclaredBounds {
     double simd_goal = kSimdError;  // the bound that SimdEngine is compiled for
     double ocio_cpu = 0;            // 0: the bound of its structure
     double ocio_gpu = 0;
-    double cube = 0;      // if OpenColorIO needs a 3D LUT of 65^3; 0: one 10-bit code
-    double cube_hdr = 0;  // the same on HDR displays; 0: as `cube`
+    double lut3d = 0;      // if OpenColorIO needs a 3D LUT of 65^3; 0: one 10-bit code
+    double lut3d_hdr = 0;  // the same on HDR displays; 0: the value of `lut3d`
     std::string reason;
 };
 
@@ -323,7 +323,7 @@ struct Operator {
     std::vector<Look> looks;
     /// Further facts that a user should know; sentences without a full stop.
     std::vector<std::string> warnings;
-    std::vector<DocumentedDifference> deviations;
+    std::vector<DocumentedDifference> differences;
     DeclaredBounds bounds;
     /// Name that several different operators share, such as "AgX". Docs compare these operators.
     /// Empty: none.

@@ -33,7 +33,7 @@ struct SequenceOptions {
     int jobs = 0;
     /// Threads for all frames together; each frame has at least one. 0: OIIO's `threads` attribute.
     int nthreads = 0;
-    /// How each frame is read. `warn` and `note` are called from one thread at a time.
+    /// Options for reading each frame. `warn` and `note` are called from one thread at a time.
     ReadOptions read = {};
     /// Warnings and notes begin with the name of their picture.
     bool names_pictures = false;

@@ -67,8 +67,8 @@ struct SourceColor {
     /// the same; safe to use from several threads at once. Empty: none.
     std::function<void(const float* in, float* out, std::size_t count)> convert = {};
 };
-/// Finds the color of a picture by a name of all_source_color_names() (source_color.h), the first
-/// of:
+/// Finds the color of a picture by a name of all_source_color_names() (source_color.h). The first
+/// match counts:
 /// * an input space by id, title or alias; a display, for its code values
 /// * `Rec709` (the camera curve of ITU-R BT.709), `GammaX.Y`
 /// * an id of the Color Interop Forum, or another curve and other primaries in the pattern of its
@@ -171,8 +171,7 @@ inline constexpr std::string_view kExposureUniform = "exposure";
 
 /// The same with uniforms instead of some numbers.
 /// @param uniforms  live parameters of the operator, and kExposureUniform, which replaces the
-/// view's
-///                  own exposure
+///                  view's own exposure
 /// @throws Error    as build_live() does
 [[nodiscard]] TONEWRIGHT_API Pipeline build_live_view(const View& view,
                                                       const std::vector<std::string>& uniforms);

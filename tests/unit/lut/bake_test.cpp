@@ -15,7 +15,8 @@ TEST(Bake, SampledNodesAreThoseOfSampleLut) {
     ASSERT_TRUE(baked.other_error) << "of the other interpolation";
     EXPECT_EQ(baked.error.interpolation, "tetrahedral");
     EXPECT_EQ(baked.other_error->interpolation, "trilinear");
-    EXPECT_EQ(bake_lut(request, LutNodes::sampled, true).error.max, baked.other_error->max);
+    EXPECT_EQ(bake_lut(request, LutNodes::sampled, LutInterpolation::trilinear).error.max,
+              baked.other_error->max);
 }
 
 TEST(Bake, DecimalsMoveNoNumberByMoreThanHalfOfTheLast) {
@@ -33,11 +34,15 @@ TEST(Bake, AMaximalErrorChoosesTheSmallestSizeThatMeetsIt) {
     LutRequest small = request;
     small.size = 17;
     const double error = bake_lut(small, LutNodes::sampled).error.photographs.p999;
-    EXPECT_EQ(bake_lut(request, LutNodes::sampled, false, error).lut.size, 17);
-    EXPECT_GT(bake_lut(request, LutNodes::sampled, false, 0.9 * error, 33).lut.size, 17);
-    EXPECT_THROW((void)bake_lut(request, LutNodes::sampled, false, 1e-9, 17), Error)
+    EXPECT_EQ(bake_lut(request, LutNodes::sampled, LutInterpolation::automatic, error).lut.size,
+              17);
+    EXPECT_GT(
+        bake_lut(request, LutNodes::sampled, LutInterpolation::automatic, 0.9 * error, 33).lut.size,
+        17);
+    EXPECT_THROW((void)bake_lut(request, LutNodes::sampled, LutInterpolation::automatic, 1e-9, 17),
+                 Error)
         << "none meets it";
-    EXPECT_THROW((void)bake_lut(small, LutNodes::sampled, false, 0.1), Error)
+    EXPECT_THROW((void)bake_lut(small, LutNodes::sampled, LutInterpolation::automatic, 0.1), Error)
         << "a size and an error";
 }
 

@@ -43,7 +43,7 @@ TEST(Interpolate, IdentityCubeIsExact) {
     const Lut lut = cube_of(17, [](const Vector3& v) { return v; });
     for (const Vector3& v : table_inputs(5000)) {
         expect_near(interpolate(lut, v), v, 1e-15, v);
-        expect_near(interpolate(lut, v, true), v, 1e-15, v);
+        expect_near(interpolate(lut, v, LutInterpolation::trilinear), v, 1e-15, v);
     }
 }
 
@@ -84,7 +84,7 @@ TEST(Interpolate, TrilinearAndTetrahedralAgreeAtNodes) {
                            static_cast<double>(node / 17 % 17) / 16,
                            static_cast<double>(node / 289) / 16};
         const Vector3 tetrahedral = interpolate(lut, v);
-        ASSERT_EQ(tetrahedral, interpolate(lut, v, true));
+        ASSERT_EQ(tetrahedral, interpolate(lut, v, LutInterpolation::trilinear));
         for (std::size_t c = 0; c < 3; ++c) {
             ASSERT_EQ(tetrahedral[c], static_cast<double>(lut.values[3 * node + c]));
         }
@@ -116,7 +116,8 @@ TEST(Interpolate, WeightsAreThoseOfTheirDefinitions) {
             }
             const double tetrahedral = std::max(0.0, lowest_inside - highest_outside);
             ASSERT_NEAR(interpolate(lut, v)[1], tetrahedral, 1e-15) << "corner " << corner;
-            ASSERT_NEAR(interpolate(lut, v, true)[1], trilinear, 1e-15) << "corner " << corner;
+            ASSERT_NEAR(interpolate(lut, v, LutInterpolation::trilinear)[1], trilinear, 1e-15)
+                << "corner " << corner;
         }
     }
 }

@@ -78,8 +78,8 @@ std::vector<double> errors_of(const ShippedLut& lut, std::vector<float> light) {
     };
     std::vector<double> errors;
     for (std::size_t i = 0; i < light.size(); i += 3) {
-        const Vector3 shown =
-            interpolate(lut.lut, {code[i], code[i + 1], code[i + 2]}, is_trilinear(*lut.set->host));
+        const Vector3 shown = interpolate(lut.lut, {code[i], code[i + 1], code[i + 2]},
+                                          interpolation_of(lut.set->host));
         double worst = 0;
         for (std::size_t c = 0; c < 3; ++c)
             worst = std::max(worst, std::fabs(shown_as(shown[c]) - shown_as(wanted[i + c])));
@@ -139,13 +139,14 @@ TEST(ShippedSet, FollowsItsOperators) {
 
 TEST(Ringing, ARec709CurveInACameraGamutRings) {
     const LutRequest request = request_of("hable", "davinci", "lin_davinci_wg", "rec1886", 33);
-    const LutRinging ringing = measure_ringing(sample_lut(request), request, true);
+    const LutRinging ringing =
+        measure_ringing(sample_lut(request), request, LutInterpolation::trilinear);
     // In saturated lamps, where Hable's own channels rise and stay: issue of the shipped set.
     EXPECT_TRUE(rings(ringing));
     EXPECT_GT(ringing.fall, 0.2);
     EXPECT_GT(ringing.p999, 0.3);
     const LutRequest own = request_of("hable", "log2", "lin_rec709", "srgb", 33);
-    EXPECT_FALSE(rings(measure_ringing(sample_lut(own), own, true)));
+    EXPECT_FALSE(rings(measure_ringing(sample_lut(own), own, LutInterpolation::trilinear)));
     EXPECT_LT(measure_ringing(sample_lut(own), own).p999, 0.02);
 }
 
@@ -162,8 +163,8 @@ TEST(Ringing, IsTheDepthOfADent) {
     const double expected =
         static_cast<double>(green(node - 1)) - (static_cast<double>(green(node)) - 0.3);
     green(node) -= 0.3F;
-    for (const bool trilinear : {false, true}) {
-        const LutRinging ringing = measure_ringing(lut, request, trilinear);
+    for (const auto interpolation : {LutInterpolation::tetrahedral, LutInterpolation::trilinear}) {
+        const LutRinging ringing = measure_ringing(lut, request, interpolation);
         // Sixteen exposures a stop, of half a stop between two nodes: within an eighth of the
         // slope.
         EXPECT_NEAR(ringing.fall, expected, 0.3 / 8);
@@ -362,12 +363,12 @@ TEST(Ringing, ATableOfOneDimensionHasNone) {
 }
 
 TEST(MeasureLut, ItsMaximumHoldsForOtherColors) {
-    // Of a cube that stated 1.33e-2 and had 1.58e-2.
+    // The request of a 3D LUT that stated 1.33e-2 and had 1.58e-2.
     const LutRequest request =
         request_of("agx_blender", "unity_logc", "lin_rec709", "linear", count_of(32, 17));
     const Lut lut = sample_lut(request);
-    for (const bool trilinear : {false, true}) {
-        const double stated = measure_lut(lut, request, trilinear).max;
+    for (const auto interpolation : {LutInterpolation::tetrahedral, LutInterpolation::trilinear}) {
+        const double stated = measure_lut(lut, request, interpolation).max;
         SampleRandom random(987);
         std::vector<double> code;
         for (std::size_t i = 0; i < 3 * count_of<std::size_t>(1000000, 100000); ++i)
@@ -380,7 +381,7 @@ TEST(MeasureLut, ItsMaximumHoldsForOtherColors) {
         double found = 0;
         for (std::size_t i = 0; i < light.size(); i += 3) {
             const Vector3 shown =
-                interpolate(lut, {input[i], input[i + 1], input[i + 2]}, trilinear);
+                interpolate(lut, {input[i], input[i + 1], input[i + 2]}, interpolation);
             for (std::size_t c = 0; c < 3; ++c)
                 found = std::max(found, std::fabs(shown[c] - wanted[i + c]));
         }

@@ -175,7 +175,7 @@ TEST(MeasureLut, NamesTheInterpolation) {
     const LutRequest r = request_for("agx_sobotka", "acescct", LutFormat::cube, 17);
     const Lut lut = sample_lut(r);
     EXPECT_EQ(measure_lut(lut, r).interpolation, "tetrahedral");
-    EXPECT_EQ(measure_lut(lut, r, true).interpolation, "trilinear");
+    EXPECT_EQ(measure_lut(lut, r, LutInterpolation::trilinear).interpolation, "trilinear");
 }
 
 TEST(MeasureLut, LargerLutsAreBetter) {

@@ -40,7 +40,7 @@ Option add_frame_options(const Command& command, FrameOptions& options) {
     return frames;
 }
 
-/// How the file is written.
+/// Options for writing the file.
 void add_file_options(const Command& command, ApplyOptions& options) {
     const char* const group = "Output";
     command.add("-d", options.type, "uint8, uint16, half or float; for DPX uint10, uint12")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What `--help` prints: options in groups, wrapped to the width of the terminal.
+// Text of `--help`: options in groups, wrapped to the width of the terminal.
 #pragma once
 
 #include <cstddef>

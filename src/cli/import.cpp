@@ -115,7 +115,7 @@ std::vector<std::string> equals_of(const Shown& shown) {
     return names;
 }
 
-/// What the numbers of the function suggest; with a warning, unless the text gave one.
+/// Judges the function by its numbers; with a warning, unless the text gave one.
 std::string judgement(const ImportedShader& shader, bool is_encoding_given) {
     const std::shared_ptr<const Operator> op = parse_operator(shader.definition, "the definition");
     const Shown shown = shown_by(resolve(*op, nullptr, {}, ""));

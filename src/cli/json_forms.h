@@ -7,7 +7,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// As `list OPERATOR --json` and `verify --json` print them.
+/// The objects that `list OPERATOR --json` and `verify --json` print.
 [[nodiscard]] Json to_json(const Operator& op);
 [[nodiscard]] Json to_json(const ParityRow& row);
 

@@ -30,7 +30,7 @@ struct MessageOptions {
 /// them when it loads the module.
 [[nodiscard]] MessageOptions& message_options();
 
-/// How messages of the command write parameters: `--size is 3`, `--size 65`.
+/// Style of parameters in messages of the command: `--size is 3`, `--size 65`.
 [[nodiscard]] const MessageStyle& command_style();
 /// The problem in one line, with the subcommand first where it is about the request.
 [[nodiscard]] std::string command_text(const Problem& problem);

@@ -21,7 +21,7 @@ struct PictureChoice {
     std::optional<double> max_pixels = {};
 };
 
-/// How pictures are read: the choice, alpha, threads, time limit.
+/// Options for reading pictures: the choice, alpha, threads, time limit.
 struct PictureInput : PictureChoice {
     int threads = 0;
     /// Seconds; each picture then has its own process. 0: no limit.
@@ -68,7 +68,7 @@ struct ShotOptions {
 };
 
 struct ApplyOptions : ViewOptions {
-    /// As on the command line: pictures, folders, @lists; without -o the last is the output.
+    /// Words of the command line: pictures, folders, @lists; without -o the last is the output.
     std::vector<std::string> pictures;
     /// -o: a file, or a folder.
     std::string output;

@@ -277,8 +277,8 @@ class PageContents {
         return settings;
     }
 
-    /// As a property of an object: a function of what fetches texels that gives the operator's
-    /// function, and those that compute texels, by the names of the textures.
+    /// Adds a property of an object: a function that takes the functions that fetch texels, and
+    /// returns the operator's function and those that compute texels, by the names of the textures.
     void add_reference(const std::string& name, const Shader& reference) {
         std::vector<std::string> textures;
         std::string formulas;

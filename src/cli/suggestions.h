@@ -29,7 +29,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] Suggestions suggest_lut_applications(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_languages(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_shader_applications(const TypedValue& typed);
-/// As the config names them: `AgX - Punchy`.
+/// Suggestions by the names of the config: `AgX - Punchy`.
 [[nodiscard]] Suggestions suggest_view_looks(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_views(const TypedValue& typed);
 

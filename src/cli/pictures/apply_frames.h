@@ -37,7 +37,7 @@ void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
                        const WriteOptions& write, const ReadOptions& read,
                        const PictureInput& picture);
 
-/// Of the pictures of `apply`, without callbacks.
+/// Options for reading the pictures of `apply`, without callbacks.
 [[nodiscard]] ReadOptions read_options_of(const ApplyOptions& options);
 
 TONEWRIGHT_NAMESPACE_END

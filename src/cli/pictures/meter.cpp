@@ -264,7 +264,7 @@ std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterOp
 
 namespace {
 
-/// What the header of a single picture says; frames of a shot say the same, and are many.
+/// Prints the facts in the header of a single picture. Frames of a shot say the same, and are many.
 void tell_header(const std::string& path, const MeterCommandOptions& options) {
     ReadMessages messages(path);
     const ReadOptions read = messages.hearing(read_options_of(options.picture));

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* kFormat = "tonewright_meter_cache";
 constexpr int kVersion = 2;
 
-/// As the cache's JSON has it.
+/// A path in the form of the cache's JSON.
 std::string absolute(const std::string& path) {
     std::error_code error;
     const fs::path full = fs::absolute(path, error);

@@ -12,7 +12,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What a picture's numbers mean. @see TonemapOptions
+/// Meaning of a picture's numbers. @see TonemapOptions
 struct MeteredInput {
     std::string space;
     std::string units;

@@ -102,7 +102,7 @@ class FinishedPictures {
     std::map<std::string, std::set<std::string>> pictures_;  // by the reason
 };
 
-/// What a command says about the picture that it reads. print() after QuietStderr has ended.
+/// Messages of a command about the picture that it reads. print() after QuietStderr has ended.
 class ReadMessages {
   public:
     /// @param name  of the picture, or of the pictures

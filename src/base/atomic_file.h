@@ -34,7 +34,7 @@ class TONEWRIGHT_API AtomicFile {
         /// A link stays, and the file that it leads to is replaced. A new file has the permissions
         /// that the umask says. While an old one is replaced, only this user can read the new one.
         of_user,
-        /// As in a cache: a link is replaced, and no other user can read the file.
+        /// For caches: a link is replaced, and no other user can read the file.
         of_program,
     };
 
@@ -50,7 +50,7 @@ class TONEWRIGHT_API AtomicFile {
 
     /// The temporary name.
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    /// Where the bytes go in the end.
+    /// The final place of the bytes.
     [[nodiscard]] const std::filesystem::path& target() const { return target_; }
     /// Why no file can be written there (a folder, a device, a pipe, a broken link); empty if one
     /// can.

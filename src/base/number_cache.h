@@ -11,7 +11,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What a caller needs of numbers from the cache: false where they would harm it.
+/// A caller's check of numbers from the cache: false if they would harm it.
 using NumberCheck = std::function<bool(const std::vector<double>& numbers)>;
 /// Exactly so many numbers, each in [least, most]. NaN never is; an infinity is where it is a
 /// limit.

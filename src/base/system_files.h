@@ -15,8 +15,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-// What this folder asks of the operating system: system_files_posix.cpp, system_files_windows.cpp.
-// An int that is no descriptor is 0 or an errno; a descriptor of -1 comes with one in `errno`.
+// The functions of the operating system that this folder uses: system_files_posix.cpp,
+// system_files_windows.cpp. An int that is no descriptor is 0 or an errno; a descriptor of -1 comes
+// with one in `errno`.
 
 /// The message of an errno.
 [[nodiscard]] inline std::string reason_of(int error_number) {
@@ -56,7 +57,7 @@ void mark_as_used(int file);
 /// The device and the number of what is there, after links; nothing if nothing is.
 [[nodiscard]] std::optional<std::pair<std::uint64_t, std::uint64_t>> identity_of(
     const std::filesystem::path& path);
-/// What one call reads or writes: Windows counts in 32 bits.
+/// Bytes that one call reads or writes: Windows counts in 32 bits.
 [[nodiscard]] inline unsigned piece_of(std::size_t bytes) {
     return static_cast<unsigned>(std::min<std::size_t>(bytes, std::size_t{1} << 30));
 }

@@ -114,7 +114,7 @@ class AccessList {
     [[nodiscard]] unsigned byte_at(std::size_t at) const {
         return static_cast<unsigned char>(bytes_[at]);
     }
-    /// Where the permissions of an entry are; 0 if there is no such entry.
+    /// Position of an entry's permissions; 0 if there is no such entry.
     [[nodiscard]] std::size_t find(unsigned tag) const {
         for (std::size_t at = kHeader; at + kEntry <= bytes_.size(); at += kEntry) {
             if (byte_at(at) == tag && byte_at(at + 1) == 0) return at + 2;
@@ -130,7 +130,7 @@ void take_access(int file, const fs::path& like) {
     struct stat old {};
     if (::lstat(like.c_str(), &old) != 0 || !S_ISREG(old.st_mode)) return;
     AccessList list(like);
-    // What is written now may run with the rights of its owner only if the owner says so again.
+    // The written file may run with the rights of its owner only if the owner says so again.
     mode_t mode = old.st_mode & (S_IRWXU | S_IRWXG | S_IRWXO);
     constexpr auto kKept = static_cast<uid_t>(-1);
     const bool has_group =

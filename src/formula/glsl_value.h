@@ -29,7 +29,7 @@ struct GlslType {
 
 /// The type of this name, of GLSL or HLSL: `vec3`, `float3x3`. Empty: no type that is read.
 [[nodiscard]] std::optional<GlslType> glsl_type(std::string_view name);
-/// As GLSL names it: `vec3`.
+/// The name in GLSL: `vec3`.
 [[nodiscard]] std::string glsl_name(const GlslType& type);
 
 struct GlslValue {

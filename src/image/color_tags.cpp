@@ -34,7 +34,7 @@ Claim power_claim(double exponent, const Primaries& primaries) {
     return {name, primaries, primaries == kRec709 ? name : ""};
 }
 
-/// How a display's code values are described in files, by its id.
+/// Description of a display's code values in files, by its id.
 struct DisplayCode {
     std::string_view id;
     IccCurve curve;          // of an SDR display
@@ -245,15 +245,15 @@ ColorDescription describe_color(const OIIO::ImageSpec& spec, std::string_view fo
     const bool is_srgb = color->curve && color->curve->is_srgb && color->primaries == kRec709;
     const bool is_linear = color->curve && color->curve->exponent == 1;
     if (is_png && is_srgb) return {};  // OpenImageIO writes the chunk sRGB
-    ColorDescription said;
+    ColorDescription description;
     if (color->curve && row->has_icc && has_icc()) {
-        said.icc =
+        description.icc =
             write_display_icc(color->primaries, *color->curve, color->name, spec.nchannels < 3);
-        return said;
+        return description;
     }
     if (is_png && color->code_points) {
-        said.chunk = cicp_chunk(*color->code_points);
-        return said;
+        description.chunk = cicp_chunk(*color->code_points);
+        return description;
     }
     // For some formats, applications always assume linear light; for others, sRGB.
     const bool assumes_linear = row->meaning == FormatMeaning::linear;
@@ -261,14 +261,14 @@ ColorDescription describe_color(const OIIO::ImageSpec& spec, std::string_view fo
     const bool is_said =
         row->has_power && color->curve && !color->curve->is_srgb && color->primaries == kRec709;
     if (is_presumed || is_said) return {};
-    said.missing = assumes_linear
-                       ? fmt::format(
+    description.missing =
+        assumes_linear ? fmt::format(
                              "most applications read {} as linear light, but the file holds code "
                              "values of {}; for linear light, use <<display=linear>>",
                              row->title, color->name)
                        : fmt::format("{} does not say that its colors are {}: viewers assume sRGB",
                                      row->title, color->name);
-    return said;
+    return description;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -40,7 +40,7 @@ struct TaggedColor {
 /// From `oiio:ColorSpace` and `chromaticities`. None where they say nothing that is known.
 [[nodiscard]] TONEWRIGHT_API std::optional<TaggedColor> tagged_color(const OIIO::ImageSpec& spec);
 
-/// How the files of a format state their colors.
+/// Statement of the colors in the files of a format.
 struct ColorDescription {
     std::string icc;    // a profile; empty: none
     std::string chunk;  // of PNG; empty: none

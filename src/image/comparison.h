@@ -23,8 +23,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 ///                       result of more than 65535 rows
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf resize_scene(const OIIO::ImageBuf& picture, int width);
 
-/// How many columns make a sheet of so many equal cells most like a screen, without gaps where that
-/// can be had.
+/// Number of columns for which a sheet of `count` equal cells is most like a screen, without gaps
+/// if possible.
 [[nodiscard]] TONEWRIGHT_API int choose_columns(int count, int cell_width, int cell_height);
 
 struct SplitLabel {
@@ -44,7 +44,7 @@ struct SplitOptions {
     bool has_labels = true;
 };
 
-/// Where the second picture begins: the nearest pixel boundary.
+/// Start of the second picture: the nearest pixel boundary.
 [[nodiscard]] TONEWRIGHT_API int split_at(int length, double position);
 
 /// Two display pictures in one: the first up to a line, then the second. All pixels except those of
@@ -54,7 +54,7 @@ struct SplitOptions {
                                                        const OIIO::ImageBuf& after,
                                                        const SplitOptions& options);
 
-/// How far two display pictures are apart.
+/// Difference between two display pictures.
 struct PictureDifference {
     OIIO::ImageBuf picture;  // absolute differences of code values, times `gain`; at most 1
     double largest = 0;      // of a channel

@@ -29,7 +29,7 @@ struct PictureSize {
 /// @throws PictureError  a display window of over 10^8 pixels that is over 4 times the data window
 TONEWRIGHT_API void check_shown_window(const OIIO::ImageBuf& picture);
 
-/// What is shown of a picture, as it is: float RGB, gray in all three. Alpha is not used.
+/// The shown part of a picture without changes: float RGB, gray in all three. Alpha is not used.
 /// @throws Error         a picture that cannot be read
 /// @throws PictureError  @see check_shown_window
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf shown_rgb(const OIIO::ImageBuf& picture);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the writers of OpenImageIO take and keep. Some of them end the process for a layout of
-// channels that they do not check, and others write files that no reader takes.
+// Limits of OpenImageIO's writers. Some of them end the process for a layout of channels that they
+// do not check, and others write files that no reader takes.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -14,7 +14,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How a format stores alpha.
+/// Storage of alpha in a format.
 enum class FileAlpha : unsigned char {
     none,
     /// Color is not multiplied by alpha: we divide before the writer gets it.
@@ -22,7 +22,7 @@ enum class FileAlpha : unsigned char {
     /// The writer divides color, in 8 bits and with a power.
     straight_by_writer,
     associated,
-    /// As the file says.
+    /// The file says which.
     either,
 };
 

@@ -468,7 +468,7 @@ void read_rla(HeaderFile& file, ImageSpec& spec) {
     const std::vector<double> gamma = numbers(kGamma, 16);
     if (gamma.size() == 1 && gamma[0] > 0)
         spec.attribute(file_tag::kGamma, static_cast<float>(gamma[0]));
-    // What every writer puts there, whatever the colors are: not even a gamut.
+    // Every writer stores these numbers, whatever the colors are: not even a gamut.
     constexpr std::array kUsual = {0.67, 0.08, 0.21, 0.71, 0.14, 0.33, 0.31, 0.316};
     std::array<float, 8> xy{};
     bool is_usual = true;

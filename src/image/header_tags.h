@@ -38,7 +38,8 @@ inline constexpr const char* kLayer = "tonewright:file:layer";
 inline constexpr const char* kSubimage = "tonewright:file:subimage";
 /// The pixels were decoded to light. The name of the color they had.
 inline constexpr const char* kLight = "tonewright:file:light";
-/// Of that light, double[10]: primaries and white, 1 if it is absolute, and the factor on it.
+/// The color of that light, double[10]: primaries and white, 1 if it is absolute, and the factor on
+/// it.
 inline constexpr const char* kLightColor = "tonewright:file:light_color";
 }  // namespace file_tag
 

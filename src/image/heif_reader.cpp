@@ -85,7 +85,7 @@ void for_each_box(std::string_view bytes, const Visit& visit) {
     }
 }
 
-/// What libheif 1.15 does not say of a file.
+/// Facts about a file that libheif 1.15 does not give.
 struct Boxes {
     bool has_sequence = false;  // `moov`
     bool has_tone_map = false;  // an item `tmap`: ISO 21496-1
@@ -557,7 +557,7 @@ class HeifInput final : public OIIO::ImageInput {
         if (bits > 0) spec.attribute("oiio:BitsPerSample", bits);
         if (has_alpha && !heif_image_handle_is_premultiplied_alpha(handle_.get()))
             spec.attribute("oiio:UnassociatedAlpha", 1);
-        // As OpenImageIO says of this format; code points and profiles take precedence.
+        // OpenImageIO's color of this format; code points and profiles take precedence.
         spec.attribute("oiio:ColorSpace", "sRGB");
         add_code_points(spec, handle_.get(), boxes_);
         add_icc(spec, handle_.get());
@@ -572,7 +572,7 @@ class HeifInput final : public OIIO::ImageInput {
     Boxes boxes_;
     std::recursive_mutex mutex_;  // OIIO's cache reads from several threads
     int subimage_ = -1;
-    // Of the current picture:
+    // State of the current picture:
     Owned<heif_image_handle> handle_;
     Owned<heif_image> image_;
     bool is_limited_ = false;

@@ -99,9 +99,9 @@ const Layer* picture_layer(const std::vector<Layer>& layers) {
     }
     constexpr std::array<std::string_view, 10> kPictures = {
         "combined", "beauty", "rgba", "rgb", "composite", "ci", "c", "final", "color", "main"};
-    for (const std::string_view wanted : kPictures) {
+    for (const std::string_view requested : kPictures) {
         for (const Layer& layer : layers) {
-            if (lowercase(last_part(layer.name)) == wanted) return &layer;
+            if (lowercase(last_part(layer.name)) == requested) return &layer;
         }
     }
     for (const Layer& layer : layers) {
@@ -111,13 +111,13 @@ const Layer* picture_layer(const std::vector<Layer>& layers) {
 }
 
 const Layer* find_layer(const std::vector<Layer>& layers, std::string_view name) {
-    const std::string wanted = lowercase(name);
+    const std::string requested = lowercase(name);
     const Layer* found = nullptr;
     for (const Layer& layer : layers) {
         const std::string full = lowercase(layer.name);
-        if (full == wanted || (full.empty() && (wanted == "rgb" || wanted == "rgba")))
+        if (full == requested || (full.empty() && (requested == "rgb" || requested == "rgba")))
             return &layer;
-        if (!full.ends_with("." + wanted)) continue;
+        if (!full.ends_with("." + requested)) continue;
         if (found) return nullptr;
         found = &layer;
     }

@@ -119,7 +119,7 @@ SceneMeter measure_whole(const ImageBuf& src, const MeterOptions& options,
 
 }  // namespace
 
-/// Of the same light, at exposure 0.
+/// Options that read the same light, at exposure 0.
 static TonemapOptions tonemap_options(const MeterOptions& options) {
     TonemapOptions result;
     result.input = options.input;

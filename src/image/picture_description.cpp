@@ -321,7 +321,7 @@ std::vector<Rule> rules_of(std::string_view format) {
             by_oiio_name, by_aces_flag, by_gamma,      by_chromaticities};
 }
 
-/// What files of the format hold if their header says nothing.
+/// The color of files of the format if their header says nothing.
 Found default_of(const ImageSpec& spec, std::string_view format) {
     const FormatColor* row =
         find_format_color(format, spec.get_string_attribute(file_tag::kExtension));
@@ -474,7 +474,7 @@ constexpr std::array kMetadata = {"oiio:UnassociatedAlpha",
 
 constexpr int kLightNumbers = 10;
 
-/// Of tag_as_light().
+/// The light that tag_as_light() stored.
 Finding tagged_light(const ImageSpec& spec) {
     const ParamValue* value =
         spec.find_attribute(file_tag::kLightColor, TypeDesc(TypeDesc::DOUBLE, kLightNumbers));
@@ -506,18 +506,18 @@ Found color_of(const ImageSpec& spec, std::string_view input, std::vector<std::s
 }  // namespace
 
 PictureDescription describe_picture(const ImageSpec& spec, std::string_view input) {
-    PictureDescription said;
-    said.ignored = ignored_of(spec);
-    Found found = color_of(spec, input, &said.ignored);
-    said.color = std::move(found.color);
-    said.rule = std::move(found.rule);
-    said.transfer = transfer_of(said.color);
-    said.orientation = orientation_of(spec);
-    said.layer = spec.get_string_attribute(file_tag::kLayer);
-    said.subimage = spec.get_string_attribute(file_tag::kSubimage);
-    said.units = said.color.is_absolute ? "cd/m2" : "relative";
-    said.alpha = alpha_kind(spec);
-    return said;
+    PictureDescription description;
+    description.ignored = ignored_of(spec);
+    Found found = color_of(spec, input, &description.ignored);
+    description.color = std::move(found.color);
+    description.rule = std::move(found.rule);
+    description.transfer = transfer_of(description.color);
+    description.orientation = orientation_of(spec);
+    description.layer = spec.get_string_attribute(file_tag::kLayer);
+    description.subimage = spec.get_string_attribute(file_tag::kSubimage);
+    description.units = description.color.is_absolute ? "cd/m2" : "relative";
+    description.alpha = alpha_kind(spec);
+    return description;
 }
 
 SourceColor source_color(const ImageSpec& spec, std::string_view input) {

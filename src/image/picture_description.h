@@ -10,7 +10,7 @@
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 
-/// What the header of a picture says, and what follows from it. Every reader of pictures asks here.
+/// Facts in the header of a picture, and their consequences. Every reader of pictures asks here.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The meaning of a picture's numbers.
@@ -18,7 +18,7 @@ struct PictureDescription {
     SourceColor color;
     /// "linear", "sRGB", "gamma 2.2", "PQ", ...
     std::string transfer;
-    /// What decided: "cICP", "ICC profile", "<<input>>", "default of 8-bit TIFF", ...
+    /// The rule that decided: "cICP", "ICC profile", "<<input>>", "default of 8-bit TIFF", ...
     std::string rule;
     /// Exif's orientation, [1, 8]: 1 is upright.
     int orientation = 1;

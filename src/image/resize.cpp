@@ -76,8 +76,8 @@ int reach_of(double factor) {
     return static_cast<int>(std::ceil(kRadius * std::max(1.0, 1 / factor))) + 1;
 }
 
-/// Where the data window ends inside of the display window, the picture goes on in black, and the
-/// filter takes some of it.
+/// Extends the data window if it ends inside of the display window: the picture goes on in black
+/// there, and the filter takes some of it.
 Axis with_black(const Axis& axis, double factor) {
     const int reach = reach_of(factor);
     Axis wide = axis;
@@ -403,7 +403,7 @@ ImageSpec resized_spec(const ImageSpec& picture, std::string_view size, double m
         throw PictureError(Problem{.value = fmt::format("picture has {} slices", picture.depth),
                                    .expected = "a flat picture with <<resize>>"});
     }
-    const ResizeSize wanted = parse_resize(size);
+    const ResizeSize requested = parse_resize(size);
     const Axis x = axis_x(picture);
     const Axis y = axis_y(picture);
     double width = x.end - x.begin;
@@ -411,12 +411,12 @@ ImageSpec resized_spec(const ImageSpec& picture, std::string_view size, double m
     // Orientations 5 to 8 lie on their side: JEITA CP-3451, 4.6.4.
     const bool lies = orientation_of(picture) >= 5;
     if (lies) std::swap(width, height);
-    if (wanted.percent > 0) {
-        width *= wanted.percent / 100;
-        height *= wanted.percent / 100;
+    if (requested.percent > 0) {
+        width *= requested.percent / 100;
+        height *= requested.percent / 100;
     } else {
-        height = wanted.height > 0 ? wanted.height : height * wanted.width / width;
-        width = wanted.width;
+        height = requested.height > 0 ? requested.height : height * requested.width / width;
+        width = requested.width;
     }
     width = std::max(std::round(width), 1.0);
     height = std::max(std::round(height), 1.0);
@@ -443,7 +443,8 @@ ImageSpec resized_spec(const ImageSpec& picture, std::string_view size, double m
     spec.full_y = to_y.begin;
     spec.full_height = to_y.end - to_y.begin;
     spec.tile_width = spec.tile_height = spec.tile_depth = 0;
-    if (wanted.height > 0) keep_shape(spec, width / (x.end - x.begin), height / (y.end - y.begin));
+    if (requested.height > 0)
+        keep_shape(spec, width / (x.end - x.begin), height / (y.end - y.begin));
     for (const char* name : {"Exif:PixelXDimension", "Exif:PixelYDimension"})
         erase_attributes(spec, name);
     return spec;

@@ -137,7 +137,7 @@ struct Light {
     }
 };
 
-/// Of one row, or of all.
+/// Figures of one row, or of all rows.
 struct Measured {
     Light finite;
     Light limited;  // pixels with NaN or infinities, which only statistics count
@@ -211,7 +211,8 @@ class Bins {
         std::size_t place = 2;
         for (int i = first_ + 1; i <= last_; ++i)
             edges_[place++] = std::max(std::exp2(scale_.at(i)), kHistogramBlack);
-        // As few digits as distinguish the edges, because the table shares the cache with pixels.
+        // The table has only as many digits as distinguish the edges, because it shares the cache
+        // with pixels.
         for (digits_ = kFewestDigits; digits_ < kMostDigits; ++digits_) {
             if (!has_narrow_bin()) break;
         }
@@ -702,8 +703,9 @@ Metering SceneMeter::metering() const {
         std::vector<double> values = all.kept;
         std::size_t sorted = 0;  // the values before it are smaller
         for (const double percent : Metering::kPercents) {
-            const double wanted = static_cast<double>(values.size()) * percent / 100;
-            const std::size_t rank = std::min(static_cast<std::size_t>(wanted), values.size() - 1);
+            const double position = static_cast<double>(values.size()) * percent / 100;
+            const std::size_t rank =
+                std::min(static_cast<std::size_t>(position), values.size() - 1);
             m.percentiles.push_back(select(values, sorted, rank));
             sorted = rank;
         }

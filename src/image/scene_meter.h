@@ -50,7 +50,7 @@ using PicturePass = std::function<void(SceneMeter&)>;
                                                         SceneMeter::Figures figures, int nthreads,
                                                         const PicturePass& pass);
 
-/// How tonemap() with these options reads a picture: color, alpha, units and white.
+/// Options that read a picture as tonemap() with these options does: color, alpha, units and white.
 [[nodiscard]] TONEWRIGHT_API MeterOptions meter_options(const TonemapOptions& options);
 
 /// Meters a file, or the rows of a region of it.

@@ -104,8 +104,8 @@ class Progress {
         if (!callback_) return;
         const std::lock_guard lock(mutex_);
         done_ += static_cast<OIIO::imagesize_t>(pixels);
-        if (stopped_ || (done_ - told_ < total_ / 100 && done_ < total_)) return;
-        told_ = done_;
+        if (stopped_ || (done_ - reported_ < total_ / 100 && done_ < total_)) return;
+        reported_ = done_;
         const auto part = static_cast<double>(done_) / static_cast<double>(total_);
         if (callback_(data_, static_cast<float>(part))) stopped_ = true;
     }
@@ -116,7 +116,7 @@ class Progress {
     void* data_;
     OIIO::imagesize_t total_ = 0;
     OIIO::imagesize_t done_ = 0;
-    OIIO::imagesize_t told_ = 0;
+    OIIO::imagesize_t reported_ = 0;
     std::mutex mutex_;
     std::atomic<bool> stopped_ = false;
 };
@@ -344,11 +344,11 @@ struct Tonemapper::State {
 
     /// Pictures of one shot are of one kind.
     static constexpr std::size_t kMostPrepared = 8;
-    /// What a program of the operator depends on beside the options that never change.
+    /// The values that a program of the operator depends on beside the options that never change.
     struct ProgramKey {
         std::string input;
         std::optional<double> fixed_exposure;
-        /// Of statistics that are live, the names alone.
+        /// Settings; only the names of statistics that are live.
         Settings settings;
         bool operator==(const ProgramKey&) const = default;
     };
@@ -730,8 +730,8 @@ Tonemapper Tonemapper::with_exposure(double stops) const {
 
 void Tonemapper::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
                      OIIO::ProgressCallback progress, void* progress_data) const {
-    Progress told(progress, progress_data);
-    state_->run(dst, src, roi, nthreads, told);
+    Progress reporter(progress, progress_data);
+    state_->run(dst, src, roi, nthreads, reporter);
 }
 
 bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,

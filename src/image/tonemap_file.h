@@ -27,7 +27,7 @@ TONEWRIGHT_API void tonemap_in_batches(const Tonemapper& tonemapper, const std::
                                        const ReadOptions& read, int nthreads,
                                        std::size_t batch_bytes);
 
-/// How the warning about a picture begins that is made for a display already. @see
+/// First words of the warning about a picture that is made for a display already. @see
 /// finished_warning
 inline constexpr std::string_view kFinishedPicture = "finished for a display (";
 

@@ -829,7 +829,7 @@ class Maker {
     double toe_ = 0;     // relative to the cusp's light
     double lowest_ = 0;  // stops from the cusp
     double whole_ = 0;
-    // As functions of hue, share of the largest saturation, and stops from the cusp with the toe:
+    // Functions of hue, share of the largest saturation, and stops from the cusp with the toe:
     std::array<std::vector<double>, 3> fixed_;
     std::array<std::function<double(double)>, 3> density_;
     std::array<std::vector<double>, 3> nodes_;

@@ -10,7 +10,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What an ICC profile says about the numbers of a picture.
+/// Meaning of a picture's numbers by an ICC profile.
 struct IccSource {
     /// Curves and colorants, exactly, or tables through LittleCMS. Relative colorimetric: the
     /// profile's white becomes (1, 1, 1).

@@ -22,7 +22,7 @@ std::string domain_warning(const std::string& file, const LutRequest& request) {
         shortest(std::fmax(1, input.scene_hi)));
 }
 
-/// What the user can change: nothing that the application fixes.
+/// Changes that the user can make; none that the application fixes.
 std::string remedy(const LutRequest& request, const BakedLut& baked, const LutApplication* host) {
     const View& view = request.view;
     if (!host) {

@@ -25,7 +25,8 @@ struct LutPresetSet {
     std::map<std::string, int> sizes = {};
     /// Operators whose LUT does not follow them in saturated lamps, @see follows_operator().
     std::set<std::string> approximate = {};
-    /// What is nearer to the operators: the rest of a sentence that begins with "Nearer: ".
+    /// Advice about LUTs that are nearer to the operators: the rest of a sentence that begins with
+    /// "Nearer: ".
     std::string nearer = {};
     /// Replaces the application's display.
     std::string display = {};

@@ -76,10 +76,10 @@ class TONEWRIGHT_API GlslGpu {
     GlslGpu& operator=(GlslGpu&&) noexcept;
     ~GlslGpu();
 
-    /// As OcioGpu::run_rgb().
+    /// @see OcioGpu::run_rgb()
     void run_rgb(const float* in, float* out, std::size_t pixel_count) const;
 
-    /// As OcioGpu::renderer().
+    /// @see OcioGpu::renderer()
     [[nodiscard]] static std::string renderer(GlslDialect dialect);
 
   private:

@@ -15,7 +15,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// LUTs of what no other operation is, and in a ctf OpenColorIO's fixed functions.
 struct LutChain {
     std::string contents;
-    /// Of OpenColorIO's CPU path, on every color of the sample set, in code values.
+    /// Error of OpenColorIO's CPU path, on every color of the sample set, in code values.
     LutError error;
     /// "matrix, half LUT, 3D LUT"
     std::string operations;

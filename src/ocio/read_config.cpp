@@ -171,7 +171,7 @@ AnyConfig read_any_config(const std::string& path, const std::string& text) {
 }
 
 void redirect_opencolorio_messages(const std::function<void(const std::string&)>& print) {
-    const auto said = std::make_shared<std::set<std::string>>();
+    const auto already_warned = std::make_shared<std::set<std::string>>();
     const auto lock = std::make_shared<std::mutex>();
     OCIO::SetLoggingFunction([=](const char* text) {
         // "[OpenColorIO Warning]: ..."
@@ -181,7 +181,7 @@ void redirect_opencolorio_messages(const std::function<void(const std::string&)>
             if (end != std::string::npos) message.erase(0, end + 3);
         }
         const std::scoped_lock guard(*lock);
-        if (!message.empty() && said->insert(message).second) print(message);
+        if (!message.empty() && already_warned->insert(message).second) print(message);
     });
 }
 

@@ -27,7 +27,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// A config of any profile.
 struct AnyConfig {
     OCIO::ConfigRcPtr config;
-    /// How the config was read, if its profile is newer than those of OpenColorIO.
+    /// The profile that the config was read with, if its own is newer than those of OpenColorIO.
     std::optional<ReadableProfile> newer = {};
 };
 

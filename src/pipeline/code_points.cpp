@@ -117,7 +117,7 @@ std::string name_of(int primaries, int transfer) {
     return "cicp:" + std::to_string(primaries) + "/" + std::to_string(transfer);
 }
 
-/// What the system gamma of HLG depends on; its display has BT.2020.
+/// Luminance that the system gamma of HLG depends on; its display has BT.2020.
 Vector3 luminance_of(const PrimariesRow& gamut) {
     if (gamut.value == kXyz) return {0, 1, 0};
     return rgb_to_xyz(gamut.primaries)[1];

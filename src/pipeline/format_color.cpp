@@ -15,7 +15,7 @@ constexpr std::string_view kFilm = "Cineon";
 
 FormatColor row(FormatMeaning meaning, std::string_view format, std::string_view title,
                 std::vector<std::string_view> extensions) {
-    // Of integers. Float files rarely hold code values, and film in floats is linear.
+    // Space of integers. Float files rarely hold code values, and film in floats is linear.
     const std::string_view integers = meaning == FormatMeaning::linear        ? kLinear
                                       : meaning == FormatMeaning::code_values ? kTexture
                                       : meaning == FormatMeaning::film        ? kFilm
@@ -101,11 +101,12 @@ const std::vector<FormatColor>& all_format_colors() {
 }
 
 const FormatColor* find_format_color(std::string_view format, std::string_view extension) {
-    const std::string wanted = lowercase(extension);
+    const std::string requested = lowercase(extension);
     const FormatColor* of_format = nullptr;
     for (const FormatColor& row : all_format_colors()) {
         if (!format.empty() && row.format != format) continue;
-        if (std::find(row.extensions.begin(), row.extensions.end(), wanted) != row.extensions.end())
+        if (std::find(row.extensions.begin(), row.extensions.end(), requested) !=
+            row.extensions.end())
             return &row;
         if (format.empty()) continue;
         // PNM is PFM's format, too, and float samples of both are linear.

@@ -225,7 +225,7 @@ void draw_patches(PlotSurface& surface, std::span<const Vector3> codes, Point le
 
 constexpr double kPatchRow = 13;
 
-// Of a chart of patches.
+// Layout of a chart of patches.
 constexpr double kFirstRow = 66;
 constexpr double kRowHeight = kPatchRow + 4;
 

@@ -61,7 +61,7 @@ void read_request_file(const fs::path& path, Request& request) {
         throw FileError(path.string() + ": file is missing; expected a line file=PICTURE");
 }
 
-/// Where `:<digits>` at the end of a text begins, or the text's size.
+/// Position of `:<digits>` at the end of a text, or the text's size.
 std::size_t end_without_number(std::string_view text) {
     const std::size_t colon = text.rfind(':');
     if (colon == std::string_view::npos || colon + 1 == text.size()) return text.size();

@@ -178,7 +178,7 @@ class TonemappedInput final : public ImageInput {
     struct Level {
         ImageSpec source;  // the fields that tonemap() reads
         ImageSpec result;
-        /// Of the file's channels, the picture's layer first; empty: as stored.
+        /// Order of the file's channels, the picture's layer first; empty: as stored.
         std::vector<int> order;
     };
 

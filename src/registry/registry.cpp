@@ -202,7 +202,7 @@ void add_setting(Settings& settings, const Operator& op, std::string_view name,
                 "; expected it once");
 }
 
-/// Where a parameter is that the operator does not have: its looks, and other dialects.
+/// Names places that have a parameter which the operator lacks: its looks, and other dialects.
 std::string elsewhere(const Operator& op, std::string_view name) {
     const auto has = [&](const Operator& other) {
         return std::any_of(
@@ -226,11 +226,12 @@ std::string elsewhere(const Operator& op, std::string_view name) {
     return note;
 }
 
-void set_look(std::string& look, const Operator& op, std::string_view wanted) {
-    if (wanted.empty() || is_same_name(look, wanted)) return;
+void set_look(std::string& look, const Operator& op, std::string_view requested) {
+    if (requested.empty() || is_same_name(look, requested)) return;
     if (!look.empty())
-        throw Error(op.id + ": look is " + look + " and " + std::string(wanted) + "; expected one");
-    look = wanted;
+        throw Error(op.id + ": look is " + look + " and " + std::string(requested) +
+                    "; expected one");
+    look = requested;
 }
 
 /// resolve(), whose error names where an unknown parameter is.

@@ -79,7 +79,7 @@ Pipeline view_of(const std::string& name) {
     return build_view(make_view(resolve_operator(name), "lin_rec709", 0, "srgb"));
 }
 
-/// Of the engine: an instruction set, or "" for the best of this machine.
+/// The engine's instruction set, or "" for the best of this machine.
 std::string& target() {
     static std::string name;
     return name;
@@ -159,7 +159,7 @@ void run_ocio(benchmark::State& state, const std::string& name,
               const OCIO::ConstTransformRcPtr& transform, OCIO::OptimizationFlags flags) {
     const OCIO::ConstCPUProcessorRcPtr cpu = make_processor(transform)->getOptimizedCPUProcessor(
         OCIO::BIT_DEPTH_F32, OCIO::BIT_DEPTH_F32, flags);
-    // What it takes as constant has no const in its interface.
+    // The interface has no const for constant pixels.
     auto* in = const_cast<float*>(picture().data());  // NOLINT(*-const-cast)
     const OCIO::PackedImageDesc source(in, kWidth, kHeight, kChannels);
     OCIO::PackedImageDesc target(result().data(), kWidth, kHeight, kChannels);
@@ -180,7 +180,7 @@ void ocio(benchmark::State& state, const std::string& name, OCIO::OptimizationFl
     }
 }
 
-/// What people have instead: a cube of the whole view behind a logarithm that holds the scene.
+/// The usual alternative: a 3D LUT of the whole view behind a logarithm that holds the scene.
 void lut65(benchmark::State& state, const std::string& name) {
     LutRequest request;
     request.view = make_view(resolve_operator(name), "lin_rec709", 0, "srgb");

@@ -16,7 +16,7 @@
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
 
-/// What is counted. A name and a frame of its own: neither inlined nor left by a jump.
+/// The function to count. It has a name and a frame of its own: neither inlined nor left by a jump.
 extern "C" [[gnu::noinline]] void counted_run(const tonewright::SimdEngine& engine, const float* in,
                                               float* out, std::size_t pixels) {
     engine.run({in, in + 1, in + 2}, 3, {out, out + 1, out + 2}, 3, pixels);

@@ -101,7 +101,7 @@ bool is_of_attribute(const void* caller) {
            std::strstr(found.dli_sname, "ParamValue12init_noclear");
 }
 
-/// Whether this allocation fails.
+/// True if this allocation fails.
 bool fails_allocation(const void* caller) {
     if (!is_armed || is_inside || is_in_loader(caller)) return false;
     is_inside = true;
@@ -115,7 +115,7 @@ bool fails_allocation(const void* caller) {
     return fails;
 }
 
-/// Whether this call on a file fails; errno says why.
+/// True if this call on a file fails; errno says why.
 bool fails_file(const char* name, bool is_write = false) {
     if (!is_armed || is_inside) return false;
     is_inside = true;

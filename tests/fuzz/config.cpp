@@ -20,7 +20,7 @@ using namespace tonewright;  // NOLINT(google-build-using-namespace): this is it
 
 void read(const std::string& text) { (void)read_config("x.ocio", text); }
 
-/// What was added can be removed again: the text is as it was.
+/// Added items can be removed again: the text is as it was.
 void extend(const std::string& text) {
     YamlText yaml(text);
     const YAML::Node item = YAML::Load("!<View> {name: a b, view_transform: \"c, d\"}");
@@ -59,7 +59,7 @@ void read_record(const std::string& text) {
     for (const AddedRecord::Piece& piece : record.pieces)
         whole += piece.before + piece.text;
     (void)record.without(whole, config);
-    // What is read is written and read again.
+    // A record that is read can be written and read again.
     const std::string written = record.text(bare);
     (void)folder.write("tonewright/x.ocio.yaml", written);
     if (AddedRecord::read(config, bare).text(bare) != written) std::abort();

@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Of any name: a 1D table and a small 3D LUT, as if the file stated its input.
+/// A table of any name: a 1D table and a small 3D LUT, with a stated input.
 tonewright::TableFile stub_table(const std::string& path) {
     using namespace tonewright;  // NOLINT(google-build-using-namespace): this is its program
     if (path.find("no") != std::string::npos) throw FileError("read: " + path + ": no such file");

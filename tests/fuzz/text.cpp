@@ -70,7 +70,7 @@ void read_lines(const std::string& text) {
     }
 }
 
-/// What is read is written and read again.
+/// A cache that is read can be written and read again.
 void read_meter_cache(const std::string& text) {
     static const PrivateFolder folder;
     const std::string path = folder.write("cache.json", text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a new operator takes: this file, dropped into src/operators/. See new_operator.sh.
+// A new operator takes only this file, dropped into src/operators/. See new_operator.sh.
 #include "operators/family.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

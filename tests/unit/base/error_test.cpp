@@ -19,13 +19,13 @@ namespace {
 
 using Kind = Problem::Kind;
 
-/// As the command writes parameters.
+/// The command's style.
 constexpr MessageStyle kOptions = {[](std::string_view name) { return "--" + std::string(name); },
                                    [](std::string_view name, std::string_view value) {
                                        return "--" + std::string(name) +
                                               (value.empty() ? "" : " " + std::string(value));
                                    }};
-/// As Python does.
+/// Python's style.
 constexpr MessageStyle kArguments = {[](std::string_view name) { return std::string(name); },
                                      [](std::string_view name, std::string_view value) {
                                          return std::string(name) + "=" + std::string(value);
@@ -98,7 +98,7 @@ TEST(Error, OfAFileIsNoUsage) {
     EXPECT_EQ(FileError(Problem{.kind = Kind::memory, .value = "x"}).problem().kind, Kind::memory);
 }
 
-/// What the step throws.
+/// The problem that the step throws.
 template <class Step>
 std::optional<Problem> problem_of(const Step& step) {
     try {

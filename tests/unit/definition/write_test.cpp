@@ -16,7 +16,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-// What the engines get is what a built-in's file gives them, so that it runs at the same speed.
+// A built-in's file gives the engines the same expressions, so that it runs at the same speed.
 // TOML's integers end at 2^63, and double precision holds all of them up to 2^53.
 TEST(Definition, LargeNumbersReadBack) {
     const auto op = parsed(

@@ -9,7 +9,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-// What stands around a function: macros, globals, other functions.
+// Text around a function: macros, globals, other functions.
 TEST(Glsl, ReadsTheRestOfTheFile) {
     const struct {
         const char* shader;

@@ -65,8 +65,8 @@ TEST(ChartScene, TheSunsetHasItsSunItsSkyAndItsHills) {
         expect_color(canvas.at(x, 104), {0.006, 0.005, 0.007}, 1e-6);
 }
 
-/// Where the camera of the spheres sees a point: from (0, 1.9, -7.2) towards (0, 0.92, 0), with a
-/// frame of +-0.24 of the distance in height.
+/// Pixel at which the camera of the spheres sees a point: from (0, 1.9, -7.2) towards (0, 0.92, 0),
+/// with a frame of +-0.24 of the distance in height.
 std::array<int, 2> pixel_of(const Vector3& point, int width, int height) {
     const double length = std::hypot(0.98, 7.2);
     const double down = 0.98 / length;

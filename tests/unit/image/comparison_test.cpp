@@ -27,8 +27,8 @@ ImageBuf counted(int width, int height, int channels, float from) {
 
 float at(const ImageBuf& picture, int x, int y, int c) { return picture.getchannel(x, y, 0, c); }
 
-/// How many columns (or rows) from the first are of `a`, then how many of `b`, bit for bit; what is
-/// between is the line. -1: there are other pixels.
+/// Number of columns (or rows) from the first that are of `a`, and of those at the end that are of
+/// `b`, bit for bit; the line is between them. -1: there are other pixels.
 std::pair<int, int> sides(const ImageBuf& split, const ImageBuf& a, const ImageBuf& b,
                           bool is_horizontal, int left, int top) {
     const int width = a.spec().width;
@@ -171,7 +171,7 @@ TEST(ResizeScene, ASunKeepsItsColor) {
         }
     }
     const ImageBuf small = resize_scene(picture, 16);
-    // Of the filter's weights, whose sum is 1, a few roundings.
+    // The filter's weights, whose sum is 1, have a few roundings.
     EXPECT_NEAR(at(small, 8, 8, 0), 3e5, 1);
     EXPECT_NEAR(at(small, 8, 8, 1), 2e5, 1);
     EXPECT_NEAR(at(small, 8, 8, 2), 8e4, 1);
@@ -219,7 +219,7 @@ TEST(ResizeScene, RepeatsPixelsAndKeepsShapes) {
 }
 
 TEST(ResizeScene, OfASmallPictureInALargeWindowTakesTheDataAlone) {
-    // As if black were there.
+    // The filter takes black for pixels outside the data window.
     ImageBuf picture = make_rgb(30, 20);
     picture.set_origin(200, 333);
     OIIO::ImageSpec& spec = picture.specmod();

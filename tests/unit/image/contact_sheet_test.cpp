@@ -208,8 +208,8 @@ TEST(Canvas, EveryPrintableCharacterIsDrawn) {
     }
 }
 
-/// How many connected parts a picture has where it is light (or dark): 8 neighbors where it is
-/// light, 4 where it is dark.
+/// Number of connected light (or dark) parts of a picture: with 8 neighbors for light parts, 4 for
+/// dark ones.
 int parts_of(Canvas& canvas, bool is_light) {
     const int width = canvas.width();
     const int height = canvas.height();
@@ -242,7 +242,7 @@ int parts_of(Canvas& canvas, bool is_light) {
     return parts;
 }
 
-// What everybody knows of the Latin letters and digits, however they are drawn.
+// Facts about Latin letters and digits that do not depend on how they are drawn.
 TEST(Canvas, LettersHaveTheHolesAndPartsOfTheirShapes) {
     const std::string one_hole = "ADOPRabdegopq0469#";
     const std::string two_holes = "B8%";

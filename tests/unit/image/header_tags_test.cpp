@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What files say of their colors.
+// Tags of files about their colors.
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a header says. Files of every format are in tests/tags; here are pictures in memory, names
-// of layers, and fields of other programs.
+// Facts in headers. Files of every format are in tests/tags; here are pictures in memory, names of
+// layers, and fields of other programs.
 #include "image/picture_description.h"
 
 #include <OpenImageIO/imagebufalgo.h>
@@ -177,8 +177,8 @@ TEST(PictureReader, ThreadsOpenPicturesWithProfiles) {
 }
 
 TEST(PictureDescription, PicturesAreTurnedWithTheirMetadata) {
-    // Where Exif says that the first row and the first column are: JEITA CP-3451, 4.6.4. The stored
-    // pixel 0,0 must come to that corner, and 1,0 beside it along the row.
+    // Exif's corners of the first row and the first column: JEITA CP-3451, 4.6.4. The stored pixel
+    // 0,0 must come to that corner, and 1,0 beside it along the row.
     struct Corner {
         int orientation, x, y, next_x, next_y;
     };

@@ -84,8 +84,8 @@ TEST(FileTags, FilesThatDeclareMoreThanTheyCanHoldAreRefused) {
     }
 }
 
-/// Of a file with the type that its format has. OIIO 2.4 cannot read its own JPEG 2000 files of
-/// some 20 pixels each way.
+/// A picture for a file with the type that its format has. OIIO 2.4 cannot read its own JPEG 2000
+/// files of some 20 pixels each way.
 ImageBuf picture_for(const std::string& format) {
     const bool is_depth = format == "zfile";
     return make_picture(make_spec(

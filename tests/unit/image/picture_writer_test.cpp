@@ -182,7 +182,7 @@ TEST_F(WrittenPicture, FormatsWithoutProxies) {
 }
 
 TEST_F(WrittenPicture, PicturesWithMetadata) {
-    // As tonemap() leaves them, and as cameras do: writers make more blocks of a file then.
+    // Attributes that tonemap() and cameras leave: writers make more blocks of a file then.
     ImageBuf picture(ImageSpec(16, 12, 3, TypeDesc::FLOAT));
     OIIO::ImageBufAlgo::fill(picture, {0.2F, 0.4F, 0.6F});
     picture.specmod().attribute("oiio:ColorSpace", "sRGB");

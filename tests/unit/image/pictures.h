@@ -47,7 +47,8 @@ inline OIIO::ImageBuf make_rgb(int width, int height, OIIO::TypeDesc type = OIIO
     return make_picture(make_spec(width, height, {"R", "G", "B"}, type), peak);
 }
 
-/// Of a file, by way of OpenImageIO's cache. Without it, version 3 reads the file into memory.
+/// A file's picture by way of OpenImageIO's cache. Without it, version 3 reads the file into
+/// memory.
 inline OIIO::ImageBuf cached_picture(const std::string& path) {
     return OIIO::ImageBuf(path, 0, 0, OIIO::ImageCache::create());
 }

@@ -135,7 +135,7 @@ TEST_F(Sequence, SkipsCompleteNewerFramesOfTheSameSizeAndType) {
     EXPECT_EQ(skipped(png, TypeDesc::UINT16), both);
     EXPECT_EQ(skipped(png, TypeDesc::UINT8), std::vector<int>{});
     EXPECT_EQ(skipped(png, TypeDesc::UNKNOWN), both) << "8 bits is what PNG has by default";
-    // What the format cannot hold outside of the display window.
+    // Pixels outside of the display window, which the format cannot hold.
     OIIO::ImageSpec spec = make_spec(40, 30, {"R", "G", "B", "A"}, TypeDesc::HALF);
     spec.x = 5;
     spec.full_width = 60;

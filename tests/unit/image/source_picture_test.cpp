@@ -116,7 +116,7 @@ TEST(Tonemap, TwoChannelsWithoutAlphaAreRefused) {
                  "picture has 2 channels (R, G); expected 1, 3 or more");
 }
 
-/// Of one pixel, with no operator to speak of: light of Rec.709 in [0, 1].
+/// Light of one pixel, with an operator that changes nothing: light of Rec.709 in [0, 1].
 std::vector<float> light_of(const ImageSpec& spec, const std::vector<float>& color,
                             const std::string& input = std::string(kAutoInput)) {
     ImageBuf src(spec);
@@ -197,7 +197,7 @@ TEST(TonemapInput, PrimariesOfThePicture) {
         expect_light(light_of(spec, color), multiply(ap1, rgb), kFiveDigits);
         EXPECT_EQ(light_of(spec, color), light_of(one_pixel(), color, "lin_ap1"))
             << "a known space as floats is that space";
-        // What readers presume of every EXR says nothing.
+        // Names that readers presume for every EXR say nothing.
         for (const char* presumed : {"Linear", "lin_rec709", "lin_rec709_scene", "scene_linear"}) {
             spec.attribute("oiio:ColorSpace", presumed);
             expect_light(light_of(spec, color), multiply(ap1, rgb), kFiveDigits);

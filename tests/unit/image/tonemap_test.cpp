@@ -236,7 +236,7 @@ TEST(Tonemap, ThreadsShareATonemapperOfPicturesInManySpaces) {
 
 using Statistics = TonemapOptions::Statistics;
 
-/// What tonemap() has to be, with the operator's settings given by hand.
+/// The result of tonemap() is that of the operator's settings given by hand.
 void expect_same_picture(const ImageBuf& picture, const TonemapOptions& options,
                          const ImageBuf& src, const ResolvedOperator& op) {
     TonemapOptions fixed = options;
@@ -287,7 +287,8 @@ TEST(Tonemap, StatisticsOfFramesCompileNothing) {
     EXPECT_EQ(tested, 14);
 }
 
-/// What is compiled for all frames shows each as a Tonemapper with that frame's numbers does.
+/// A program that is compiled for all frames shows each of them as a Tonemapper with that frame's
+/// numbers does.
 TEST(Tonemap, LiveStatisticsGiveThePictureOfFixedOnes) {
     for (const Operator& op : all_operators()) {
         const TonemapOptions options = {.op = resolve_picture_operator(op.id)};

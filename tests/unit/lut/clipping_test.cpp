@@ -10,7 +10,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Of 0.72, as IEC 61966-2-1 has it.
+/// Code value of 0.72 by IEC 61966-2-1.
 const double kCodeAtTwoStops = 1.055 * std::pow(0.72, 1 / 2.4) - 0.055;
 
 TEST(Clipping, SaysWhichStops) {

@@ -35,7 +35,7 @@ struct Errors {
     double max = 0;
 };
 
-/// Of codes that scenes make, after the cube and the view again.
+/// Errors of codes that scenes make, after the 3D LUT and the view again.
 Errors errors_of(const InverseCubeProblem& problem, const std::vector<double>& nodes) {
     const Grid cube(problem.edge, [&] { return nodes; });
     const ReferenceEngine before(problem.before);

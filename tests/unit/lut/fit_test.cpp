@@ -56,7 +56,7 @@ struct Errors {
     double max = 0;
 };
 
-/// Of a cube, in what is seen.
+/// Errors of a 3D LUT in the shown colors.
 Errors errors_of(const CubeProblem& problem, const std::vector<double>& nodes,
                  const std::vector<float>& rgb) {
     const Lut lut = lut_of(nodes, problem.edge);
@@ -186,7 +186,7 @@ TEST(FitCube, WithoutSamplesOnlyGraysAreFitted) {
     }
 }
 
-/// What the display clips is not fitted at the cost of what it shows.
+/// Colors that the display clips are not fitted at the cost of those that it shows.
 TEST(FitCube, ClippedColorsDoNotCount) {
     CubeProblem problem;
     problem.edge = 9;

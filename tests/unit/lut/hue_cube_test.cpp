@@ -64,7 +64,7 @@ TEST(HueStructure, OfAces20EqualsItsStage) {
     EXPECT_EQ(find_hue_structure({{Expr::input(0), Expr::input(1), Expr::input(2)}}), nullptr);
 }
 
-/// Of 25 nodes a side: the shipped one has 18 times as many.
+/// The 3D LUT has 25 nodes a side: the shipped one has 18 times as many nodes.
 TEST(HueCube, KeepsBlackGraysAndHues) {
     const CrossTalkStage stage = mixing_stage(resolve_operator("aces_20").build());
     const auto structure = find_hue_structure(stage);

@@ -84,7 +84,7 @@ std::string text_tag(const std::string& text) {
 struct Colorants {
     Vector3 red, green, blue;
 };
-// As the makers' own profiles have them.
+// The colorants of the makers' own profiles.
 const Colorants kHp = {
     {0.43607, 0.22249, 0.01392}, {0.38515, 0.71687, 0.09708}, {0.14307, 0.06061, 0.71410}};
 const Colorants kAdobe = {
@@ -253,7 +253,7 @@ TEST(IccSource, AgreesWithClosedFormulas) {
 constexpr double kNumbers = 4e-5;
 
 TEST(IccSource, ParametricCurvesAreLittleCmsOwn) {
-    // Of type 2, LittleCMS lets the formula begin at 0, even where -b/a is below.
+    // In type 2, LittleCMS lets the formula begin at 0, even where -b/a is below.
     const std::vector<Vector3> above = {{1.5, 2, 4}};
     const std::vector<Vector3> outside = {{1.5, 2, 4}, {-0.2, -0.01, 0.3}};
     const std::vector<std::pair<std::uint32_t, std::vector<double>>> curves = {

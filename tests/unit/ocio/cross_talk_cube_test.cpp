@@ -73,7 +73,7 @@ TEST(LowerMap3, SaysWhenACubeLosesNegatives) {
 }
 
 TEST(LowerMap3, LightAboveThePeakIsKeptOrRefused) {
-    // What comes out of a map may be above 1, as with `linear` output or for HDR displays.
+    // The output of a map may be above 1, as with `linear` output or for HDR displays.
     std::array<Expr, 3> f = {Expr::input(0), Expr::input(1), Expr::input(2)};
     for (Expr& c : f)
         c = 12 * c / (1 + c);

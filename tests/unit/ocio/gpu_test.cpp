@@ -184,8 +184,8 @@ TEST(ShaderGpu, ArraysAndTexturesHoldTheSameNumbers) {
                 // grows 8400 times.
                 for (std::size_t i = 0; i < rgb.size(); ++i)
                     far += std::fabs(static_cast<double>(got[0][i]) - truth[i]) > 5e-4 ? 1 : 0;
-                // Where a float rounds to the next step: 700 steps take 1e-7 each of what 30,000
-                // numbers are drawn from, and a color has three results.
+                // A float may round to the next step: 700 steps take 1e-7 each of the range that
+                // 30,000 numbers are drawn from, and a color has three results.
                 EXPECT_LE(far, how == Table::Interpolation::step ? 30U : 0U)
                     << count << " " << has_positions;
             }

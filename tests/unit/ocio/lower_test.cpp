@@ -435,7 +435,7 @@ TEST(LowerView, NanAndInfinitiesAreSanitizedAsInTheEngines) {
                                          std::to_string(in[i / 3 * 3 + 1]) + ", " +
                                          std::to_string(in[i / 3 * 3 + 2]) + ")";
                 ASSERT_TRUE(form.out[i] >= -1e-6F && form.out[i] <= 1 + 1e-6F) << what;
-                // What NaN becomes in GLSL is the driver's affair.
+                // The driver decides what NaN becomes in GLSL.
                 if (form.is_gpu && std::any_of(&in[i / 3 * 3], &in[i / 3 * 3] + 3,
                                                [](float x) { return std::isnan(x); })) {
                     continue;
@@ -464,7 +464,7 @@ TEST(LowerView, PerChannelOperatorsKeepToTheCurveBound) {
             build_view(make_view(resolve_operator(op.id), "lin_rec709", 0, "srgb"));
         if (!is_per_channel(view)) continue;
         SCOPED_TRACE(op.id);
-        // What an operator declares is wider than the structure's bound, and has its reason.
+        // A bound that an operator declares is wider than the structure's, and has its reason.
         expect_close(view, mixed_colors(), std::max(3e-7, op.bounds.ocio_cpu),
                      std::max(1e-6, op.bounds.ocio_gpu));
     }

@@ -141,7 +141,7 @@ inline void expect_sane(const Pipeline& pipeline, double bound) {
             const float* rgb = &in[i / 3 * 3];
             ASSERT_TRUE(form.out[i] >= -1e-6F && form.out[i] <= 1 + 1e-6F)
                 << form.name << " of " << rgb[0] << ", " << rgb[1] << ", " << rgb[2];
-            // What NaN becomes in GLSL is the driver's affair.
+            // The driver decides what NaN becomes in GLSL.
             if (form.is_gpu && std::any_of(rgb, rgb + 3, [](float x) { return std::isnan(x); }))
                 continue;
             EXPECT_NEAR(static_cast<double>(form.out[i]), truth[i], bound)

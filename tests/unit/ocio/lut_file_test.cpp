@@ -40,7 +40,7 @@ float factor_of(const LutFile& lut) {
     return out[1];
 }
 
-/// As an application does it, which has no cache of processors.
+/// The factor in an application, which has no cache of processors.
 float factor_in_application(const std::string& path) {
     const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
     file->setSrc(path.c_str());

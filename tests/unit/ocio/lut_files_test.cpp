@@ -19,7 +19,7 @@ namespace {
 
 const Expr kX = Expr::input();
 
-/// What OpenColorIO makes of colors with a table from a file.
+/// OpenColorIO's results for colors with a table from a file.
 std::vector<float> through_file(const ClfTable& table, std::vector<float> rgb) {
     const Folder folder;
     const std::string path = folder / (std::string("table") + file_extension(table));

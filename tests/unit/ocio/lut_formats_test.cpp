@@ -19,7 +19,7 @@ namespace {
 
 const Expr kX = Expr::input();
 
-/// What OCIO makes of a file, for interleaved RGB.
+/// OCIO's results for a file, in interleaved RGB.
 std::vector<float> through_ocio(const std::string& path, std::vector<float> rgb, int dimension) {
     const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
     file->setSrc(path.c_str());

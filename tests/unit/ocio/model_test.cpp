@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a config says before it becomes OpenColorIO objects: the rules that give files their spaces.
+// The model of a config before it becomes OpenColorIO objects: the rules that give files their
+// spaces.
 #include "ocio/model.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// As OpenColorIO finds it: the first rule whose extension or expression the whole path has.
+/// Finds a space like OpenColorIO: the first rule whose extension or expression the whole path has.
 std::string space_of_file(const ConfigModel& model, const std::string& path) {
     for (const ConfigModel::FileRule& rule : model.file_rules) {
         const std::regex wanted = rule.regex.empty()
@@ -172,7 +173,7 @@ TEST(ViewDescriptions, NameTheConstantsOfOperatorsThatMeasure) {
               std::string::npos)
         << model.views[0].description;
     EXPECT_EQ(stand_ins(model.views[1].op), "");
-    // What the user sets is no stand-in.
+    // A value that the user sets is no stand-in.
     EXPECT_EQ(stand_ins(resolve_operator("drago", {{"maximum", "7"}})).find("maximum"),
               std::string::npos);
 }

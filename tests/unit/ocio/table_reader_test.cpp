@@ -13,7 +13,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What the stages of a file make of a color.
+/// Result of a file's stages for a color.
 std::array<double, 3> shown(const std::string& path, const std::array<double, 3>& rgb) {
     const std::array<Expr, 3> f = compose(ocio_table_reader()(path).stages);
     return {evaluate(f[0], rgb), evaluate(f[1], rgb), evaluate(f[2], rgb)};

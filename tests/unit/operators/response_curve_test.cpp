@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 const std::string kData = TONEWRIGHT_TEST_DATA "/";
 
-/// What reading it as the file `f` is refused with; empty when it is read.
+/// Error of reading the text as the file `f`; empty if it can be read.
 std::string refusal(std::string_view text, std::string_view curve = {}) {
     try {
         (void)parse_response_curves(text, "f", curve);
@@ -36,7 +36,7 @@ double at(const ResponseCurves& curves, std::size_t channel, double x) {
     return (*curves[channel])(x);
 }
 
-/// As python_check/make_synthetic_response.py writes them.
+/// The curves that python_check/make_synthetic_response.py writes.
 double synthetic(std::size_t channel, double b) {
     constexpr double k[] = {3.0, 2.8, 3.3};
     constexpr double p[] = {0.7, 0.75, 0.8};
@@ -286,7 +286,7 @@ TEST(ResponseCurve, RefusesOtherFiles) {
     fs::remove_all(folder);
 }
 
-/// What is read of any beginning of a file is a curve or a refusal.
+/// Any beginning of a file gives a curve or a refusal.
 TEST(ResponseCurve, EveryTruncatedFileIsReadOrRefused) {
     for (const std::string file :
          {"synthetic_response.rf", "synthetic_response_uneven.csv", "synthetic_dorf.txt"}) {

@@ -17,7 +17,7 @@ namespace {
 const std::vector<std::string> kNone;
 
 double uniform_log(SampleRandom& random, double lo, double hi) {
-    // Of intervals over several powers of ten, every power as often.
+    // In intervals over several powers of ten, every power is drawn as often.
     if (lo > 0 && hi / lo > 100) return lo * std::pow(hi / lo, random.uniform(0, 1));
     return random.uniform(lo, hi);
 }

@@ -12,7 +12,7 @@
 #include "tonewright/view.h"
 #include "unit/errors.h"
 
-/// What pipelines show, for tests of pipelines and operators.
+/// Results of pipelines, for tests of pipelines and operators.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// By plain recursion over the expressions: no engine is under test here.

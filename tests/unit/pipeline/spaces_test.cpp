@@ -171,7 +171,7 @@ TEST(View, UnknownNamesGetTheNearest) {
     EXPECT_EQ(view_error("lin_rec709", 0, "srbg"),
               "display is srbg; expected srgb, display_p3, rec1886, rec2020, g22, rec2100_pq, "
               "rec2100_hlg, p3d65_pq, linear or native; did you mean srgb?");
-    // Where no light is shown, `linear` is no display.
+    // `linear` is no display, because it shows no light.
     EXPECT_EQ(error_of([] { (void)find_display("linear"); }),
               "display is linear; expected srgb, display_p3, rec1886, rec2020, g22, rec2100_pq, "
               "rec2100_hlg or p3d65_pq");

@@ -160,7 +160,8 @@ TEST(Stage, ToneScaleIsBlackWhereTheNormIsNotPositive) {
     EXPECT_EQ(shown(s, {1, -1, 1}), black) << "0.2126 - 0.7152 + 0.0722 is negative";
 }
 
-/// Where the middle channel lies between the smallest and the largest, and which ones those are.
+/// The middle channel keeps its place between the smallest and the largest, and all three keep
+/// their order.
 void expect_same_hue(const Vector3& a, const Vector3& b) {
     const auto place = [](const Vector3& c) {
         const auto [lo, hi] = std::minmax_element(c.begin(), c.end());
@@ -280,7 +281,7 @@ TEST(Pipeline, PrintsOneStageALine) {
 }
 
 TEST(Stage, ApplyComposesWithAnyExpressions) {
-    // What a pipeline of one stage composes, of other expressions than the inputs.
+    // A pipeline of one stage composes the same from other expressions than the inputs.
     for (const Stage& stage : std::vector<Stage>{MatrixStage{{{{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}}},
                                                  curve_stage(kX / (kX + 1)), ClampStage{-1, 2},
                                                  CrossTalkStage{{max(kR, kG), kB, kR - kB}},

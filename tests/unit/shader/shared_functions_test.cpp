@@ -10,7 +10,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-// What three channels have in common is a function; its formula stands there once.
+// Three channels share a function; its formula stands there once.
 TEST(Shader, ACurveOfEachChannelIsWrittenOnce) {
     const ShaderErrors unmeasured;
     const std::string text = write_shader(request_of("agx_blender:formula"), &unmeasured).text;

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""README, docs/ and all help texts use one vocabulary and American spelling.
+"""README, docs/, all help texts and identifiers of public headers use one vocabulary and American spelling.
+
+Comments in src/ and tests/ say what a thing is or why: they begin no line with one of BEGINNINGS.
 
 Usage: words.py TONEWRIGHT
 
@@ -62,7 +64,12 @@ ALLOWED = [
     ("bake --help-all", "Formats: cube,", "the name of a format"),
     ("--help-all", "unpremult", "the one explanation of un-premultiply"),
     ("docs/operators/agx_blender.md", "lattice or formula", "the values of a parameter"),
+    ("tonewright/lut.h", "cube,", "the name of a format"),
+    ("tonewright/lut.h", "Lut Format::cube", "the name of a format"),
 ]
+
+# Words at the start of a comment's line that hide its subject.
+BEGINNINGS = re.compile(r"//[/!]?<?\s*(Of|What|Where|Whether|As|How)\b")
 
 
 def prose(text):
@@ -73,6 +80,20 @@ def prose(text):
     text = re.sub(r"(?ms)^ *```.*?^ *```", blank, text)
     text = re.sub(r"`[^`]*`", blank, text)
     return re.sub(r"\]\([^)]*\)|<a [^>]*>|https?://\S+", blank, text)
+
+
+def identifiers(text):
+    """C++ without comments and strings, identifiers as words; lines stay where they are."""
+    code = re.sub(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"', "", text)
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|_", " ", code)
+
+
+def beginnings():
+    for folder in ("src", "tests"):
+        for path in sorted(path for path in (ROOT / folder).rglob("*") if path.suffix in (".h", ".cpp")):
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                if match := BEGINNINGS.search(line):
+                    yield f"{path.relative_to(ROOT)}:{number}: comment begins with {match[1]}; say what the thing is"
 
 
 def help_texts(command):
@@ -104,8 +125,11 @@ def main():
     texts = [(str(page.relative_to(ROOT)), prose(page.read_text()))
              for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]]
     texts += help_texts(sys.argv[1])
+    texts += [(str(header.relative_to(ROOT)), identifiers(header.read_text()))
+              for header in sorted((ROOT / "src/include/tonewright").glob("*.h"))]
     used = set()
     found = [finding for where, text in texts for finding in findings(where, text, used)]
+    found += beginnings()
     found += [f"tests/words.py: nothing needs {entry}" for entry in ALLOWED if entry not in used]
     print("\n".join(found + [f"{len(texts)} texts, {len(found)} findings"]))
     return 1 if found else 0

@@ -8,12 +8,15 @@ the scripts do: `N passed, M failed`. A test that is skipped says why in a line 
 all tests of a run are skipped, the exit status is 77, so that ctest shows the run as skipped.
 """
 
+import importlib
 import os
+import shutil
+import sys
 from pathlib import Path
 
 import pytest
 
-from pictures import ALL, SKIPPED, Report
+from pictures import ALL, SKIPPED, Report, share_of
 
 PROJECT = Path(__file__).resolve().parents[1]
 
@@ -24,6 +27,7 @@ def pytest_addoption(parser):
                     help="the command (default: build/release/bin/tonewright)")
     group.addoption("--python-module", type=Path, metavar="FOLDER", help="folder of the Python package; without it, its tests are skipped")
     group.addoption("--plugin", type=Path, metavar="FOLDER", help="folder of the format plugin; without it, its tests are skipped")
+    group.addoption("--other", type=Path, metavar="COMMAND", help="the command of another build, which must write the same files")
     group.addoption("--site", type=Path, metavar="FOLDER", help="the documentation site; without it, its test builds one")
     group.addoption("--screenshots", type=Path, metavar="FOLDER", help="write pictures of pages here")
 
@@ -50,23 +54,31 @@ def command(request):
     return path
 
 
-def folder_option(request, name):
-    folder = request.config.getoption(name)
+def built_folder(request, name, pattern):
+    """A folder that an option names, else one of the command's build."""
+    folder = request.config.getoption(name) or next(request.getfixturevalue("command").parents[1].glob(pattern), None)
     if folder is None:
-        pytest.skip(f"{name} names no folder")
+        pytest.skip(f"{name} names no folder, and the build has no {pattern}")
     return folder.resolve()
 
 
 @pytest.fixture(scope="session")
 def python_module(request):
     """The folder of the Python package."""
-    return folder_option(request, "--python-module")
+    return built_folder(request, "--python-module", "python")
+
+
+@pytest.fixture(scope="session")
+def tw(python_module):
+    """The Python package."""
+    sys.path.insert(0, str(python_module))
+    return importlib.import_module("tonewright")
 
 
 @pytest.fixture(scope="session")
 def plugin(request):
     """The folder of the format plugin of OpenImageIO."""
-    return folder_option(request, "--plugin")
+    return built_folder(request, "--plugin", "lib/OpenImageIO-*")
 
 
 @pytest.fixture(scope="session")
@@ -83,6 +95,20 @@ def scratch(tmp_path):
     return tmp_path
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder that the tests of a file share. The file may fill it by a fixture of the same name."""
+    return tmp_path_factory.mktemp("shared")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_folders_left(request, tmp_path_factory):
+    """Removes the folders of all tests, unless one of them has failed."""
+    yield
+    if not request.session.testsfailed:
+        shutil.rmtree(tmp_path_factory.getbasetemp(), ignore_errors=True)
+
+
 @pytest.fixture
 def report(request):
     """Counts the checks of a test, and of the whole run."""
@@ -94,9 +120,17 @@ def report(request):
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leaves out what only full runs take, unless someone asks for a test by its name."""
-    is_asked_for = config.option.keyword or any("::" in argument for argument in config.args)
-    left_out = [item for item in items if item.get_closest_marker("full") and not ALL and not is_asked_for]
+    """Leaves out what only full runs take, and shares that are not this commit's, unless someone asks for a test by its name."""
+    if ALL or config.option.keyword or any("::" in argument for argument in config.args):
+        return
+    left_out = {item for item in items if item.get_closest_marker("full")}
+    shares = {}
+    for item in items:
+        if mark := item.get_closest_marker("share"):
+            shares.setdefault((item.path, *mark.args), []).append(item)
+    for (_, parts), members in shares.items():
+        with config.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
+            left_out |= set(members) - set(share_of(members, parts))
     if left_out:
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in left_out]
@@ -107,7 +141,7 @@ def pytest_pyfunc_call(pyfuncitem):
     """Runs a test; fails with its failed checks, and if it has made none."""
     arguments = {name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}
     pyfuncitem.obj(**arguments)
-    made = arguments.get("report")
+    made = pyfuncitem.funcargs.get("report")
     if made is not None:
         if made.failures:
             pytest.fail("\n".join(made.failures), pytrace=False)
@@ -132,5 +166,6 @@ def pytest_terminal_summary(terminalreporter, config):
 
 def pytest_sessionfinish(session, exitstatus):
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")
-    if exitstatus == 0 and reporter.stats.get("skipped") and not reporter.stats.get("passed"):
+    is_empty = exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED)
+    if is_empty and reporter.stats.get("skipped") and not reporter.stats.get("passed"):
         session.exitstatus = SKIPPED

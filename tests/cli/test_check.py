@@ -1,27 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """`tonewright check`: .tone files that break each law, at places that follow from their formulas; the catalogue, which
 breaks none; and the numeric inverses of .tone files, against closed forms.
-
-    python3 tests/cli/test_check.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
 """
 
-import argparse
 import json
 import os
 import re
 import subprocess
-import sys
-import tempfile
 import time
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import ALL, PROJECT, Report, evaluate, run  # noqa: E402
+import pytest
+from pictures import ALL, PROJECT, evaluate, run
 
 LAWS = ["finite", "monotone", "bounded", "white", "black", "gray", "continuous", "inverse"]
 OK, CHECK_FAILED, USAGE, FILE = 0, 1, 2, 3
@@ -76,9 +67,17 @@ def laws_of(command, *arguments):
     return {law["law"]: law for law in json.loads(run(command, "check", *arguments, "--json"))["laws"]}
 
 
-def check_broken(report, command, folder):
-    for name, (stages, law, x, words) in BROKEN.items():
-        path = write(folder, name, stages)
+@pytest.fixture(scope="module")
+def folder(folder):
+    """With a file for each entry of BROKEN."""
+    for name, (stages, *_) in BROKEN.items():
+        write(folder, name, stages)
+    return folder
+
+
+def test_broken(report, command, folder):
+    for name, (_, law, x, words) in BROKEN.items():
+        path = folder / f"{name}.tone"
         found = laws_of(command, path)
         report.check(f"{name}: {law} breaks", found[law]["verdict"] == "breaks" and words in found[law]["text"], found[law])
         if x is not None:
@@ -99,7 +98,7 @@ def check_broken(report, command, folder):
     report.check("a jump is bisected to the last bits", abs(step["x"] - 0.5) < 1e-15, step["x"])
 
 
-def check_declared(report, command, folder):
+def test_declared(report, command, folder):
     declared = '[[deviation]]\nkind = "black"\nvalue = 0.01\n'
     lifted = write(folder, "declared", BROKEN["lifted"][0], declared)
     found = laws_of(command, lifted)["black"]
@@ -120,7 +119,7 @@ def check_declared(report, command, folder):
     report.check("--set", call(command, "check", "hable", "--set", "white=8", "--strict")[::2] == (OK, ""))
 
 
-def check_catalogue(report, command):
+def test_catalogue(report, command):
     operators = json.loads(run(command, "list", "--json"))["operators"]
     variants = [[op["id"]] for op in operators]
     variants += [[f"{op['id']}:{preset['id']}"] for op in operators for preset in op["presets"]]
@@ -132,7 +131,7 @@ def check_catalogue(report, command):
                  [text for text in failed.values() if text])
 
 
-def check_output(report, command, folder):
+def test_output(report, command, folder):
     path = write(folder, "plain", f"[[stage]]\n{REINHARD}")
     start = time.perf_counter()
     _, out, err = call(command, "check", path, LC_ALL="C.UTF-8")
@@ -164,7 +163,7 @@ def check_output(report, command, folder):
     report.check("broken places are marked", "!" in call(command, "check", folder / "step.tone", "--ascii")[1].splitlines()[19])
 
 
-def check_page(report, command, folder):
+def test_page(report, command, folder):
     """The example of docs/tone_files.md, and what the page says that it prints."""
     page = (PROJECT / "docs" / "tone_files.md").read_text()
     definition, shown = re.search(r"cat >jump.tone <<'END'\n(.*?)END\n.*?```\n\n```text\n(.*?)```\n", page, re.S).groups()
@@ -176,7 +175,7 @@ def check_page(report, command, folder):
     report.check("docs: no inverse", done[1].stderr in page, done[1].stderr)
 
 
-def check_errors(report, command, folder):
+def test_errors(report, command, folder):
     for arguments, code, words in [
         (["none.tone"], FILE, "none.tone: no such file"),
         (["habel"], USAGE, "did you mean hable?"),
@@ -190,7 +189,7 @@ def check_errors(report, command, folder):
                      and words.lower() in err.lower(), f"{found}: {err}")
 
 
-def check_inverses(report, command, folder):
+def test_inverses(report, command, folder):
     """Operators without a formula for their inverse: eval --inverse is the inverse all the same."""
     light = np.geomspace(1e-4, 0.999, 300)
     colors = np.stack([light, light[::-1], light / 2], axis=1)
@@ -245,14 +244,10 @@ def check_inverses(report, command, folder):
     report.check("no inverse: the stage", code == USAGE and "agx_blender has no inverse: stage" in err, err)
 
 
-def check_config(report, command, folder):
+def test_config(report, command, folder):
     """The inverse view transform of a config."""
-    try:
-        import PyOpenColorIO as ocio
-    except ImportError:
-        print("The inverse in a config is not checked: PyOpenColorIO is missing", flush=True)
-        return
-    path = folder / "curve.tone"
+    ocio = pytest.importorskip("PyOpenColorIO", reason="The inverse in a config is not checked: PyOpenColorIO is missing")
+    path = write(folder, "curve", f"[[stage]]\n{REINHARD}")
     run(command, "config", "-o", folder / "config", "--views", path, "--displays", "srgb", "-q")
     config = ocio.Config.CreateFromFile(str(folder / "config" / "config.ocio"))
     view = ocio.DisplayViewTransform(src="lin_rec709", display="sRGB", view="curve",
@@ -266,25 +261,3 @@ def check_config(report, command, folder):
     shown = np.where(again <= 0.0031308, 12.92 * again, 1.055 * np.maximum(again, 1e-9) ** (1 / 2.4) - 0.055)
     report.bound("inverse view of a config, code values", np.abs(shown - codes).max(), 1e-3)
     report.check("it is not the identity", np.abs(scene - light).max() > 0.1)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        check_broken(report, command, folder)
-        check_declared(report, command, folder)
-        check_catalogue(report, command)
-        check_output(report, command, folder)
-        check_page(report, command, folder)
-        check_errors(report, command, folder)
-        check_inverses(report, command, folder)
-        check_config(report, command, folder)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,26 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Completion in bash, fish and zsh: each script completes lines, as the shell calls it.
+"""Completion in bash, fish and zsh: each script completes lines, as the shell calls it."""
 
-    python3 tests/cli/test_completion.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import os
 import re
 import shlex
-import shutil
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import SKIPPED, Report  # noqa: E402
+import pytest
+from pictures import PROJECT, need_program
 
-ROOT = Path(__file__).resolve().parents[2]
-SCRIPTS = ROOT / "src" / "cli" / "completions"
+SCRIPTS = PROJECT / "src" / "cli" / "completions"
 # Line -> a word that completes its last one, as users know it from the documents.
 LINES = {
     "tonewright ba": "bake",
@@ -66,28 +55,14 @@ def zsh(line):
     return ["zsh", "-f", "-c", script]
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=Path)
-    folder = parser.parse_args().command.resolve().parent
-    shells = [shell for shell in (bash, fish, zsh) if shutil.which(shell.__name__)]
-    if len(shells) < 3:
-        print("bash, fish or zsh is not installed")
-        return SKIPPED
-    report = Report()
-    with tempfile.TemporaryDirectory() as home:
-        (Path(home) / ".zshrc").write_text(ZSHRC)
-        environment = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "ZDOTDIR": home, "TERM": "dumb"}
-        for shell in shells:
-            for line, wanted in LINES.items():
-                # Bash replaces the text after the last `:` or `=`.
-                word = re.split("[:=]", wanted)[-1] if shell is bash else wanted
-                done = subprocess.run(shell(line), cwd=ROOT, env=environment, capture_output=True, text=True, check=False,
-                                      timeout=60)
-                words = [offered.split("\t")[0] for offered in done.stdout.splitlines()]
-                report.check(f"{shell.__name__}: {line} -> {wanted}", word in words, (words, done.stderr))
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+@pytest.mark.parametrize("shell", [bash, fish, zsh])
+def test_shell(report, command, scratch, shell):
+    need_program(shell.__name__, shell.__name__)
+    (scratch / ".zshrc").write_text(ZSHRC)
+    environment = {**os.environ, "PATH": f"{command.parent}:{os.environ['PATH']}", "ZDOTDIR": str(scratch), "TERM": "dumb"}
+    for line, wanted in LINES.items():
+        # Bash replaces the text after the last `:` or `=`.
+        word = re.split("[:=]", wanted)[-1] if shell is bash else wanted
+        done = subprocess.run(shell(line), cwd=PROJECT, env=environment, capture_output=True, text=True, check=False, timeout=60)
+        words = [offered.split("\t")[0] for offered in done.stdout.splitlines()]
+        report.check(f"{shell.__name__}: {line} -> {wanted}", word in words, (words, done.stderr))

@@ -1,12 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The help of every command: width, two lines an option, all options in --help-all. The commands of the README run.
+"""The help of every command: width, two lines an option, all options in --help-all. The commands of the README run."""
 
-    python3 tests/cli/test_help.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import fcntl
 import os
 import pty
@@ -14,15 +8,11 @@ import re
 import shutil
 import struct
 import subprocess
-import sys
-import tempfile
 import termios
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
+import pytest
+from pictures import PROJECT
 
-ROOT = Path(__file__).resolve().parents[2]
 APPLY_LINES = 50  # a page of a large terminal
 OPTION = r"--?[a-zA-Z0-9][a-z0-9-]*"
 
@@ -74,7 +64,22 @@ def options_of(text):
     return {name for names, _ in entries_of(text) for name in re.findall(rf"(?<![\w-]){OPTION}", names)}
 
 
-def check_pages(report, command, commands):
+@pytest.fixture(scope="module")
+def commands(command):
+    """Names of all commands."""
+    return [name for name, _ in entries_of(help_of(command, "--help")) if not name.startswith("-")]
+
+
+def test_overview(report, command, commands):
+    report.check(f"{len(commands)} commands", {"apply", "bake", "config", "verify"} <= set(commands), commands)
+    wide = [line for line in help_of(command, "--help").splitlines() if len(line) > 80]
+    report.check("--help: at most 80 columns", not wide, wide)
+    whole = help_of(command, "--help-all")
+    report.check("--help-all has the help of every command",
+                 all(help_of(command, name, "--help-all") in whole for name in commands))
+
+
+def test_pages(report, command, commands):
     for name in commands:
         for flag in ("--help", "--help-all"):
             text = help_of(command, name, flag)
@@ -92,18 +97,18 @@ def check_pages(report, command, commands):
     report.check(f"apply --help has {lines} lines, at most {APPLY_LINES}", lines <= APPLY_LINES)
 
 
-def check_all_options(report, command, commands):
+def test_all_options(report, command, commands):
     """Options that the sources add, and those that the documents use."""
     everything = {name: options_of(help_of(command, name, "--help-all")) for name in commands}
     shown = set().union(*everything.values())
     added = set()
-    for source in (ROOT / "src" / "cli").glob("*.cpp"):
+    for source in (PROJECT / "src" / "cli").glob("*.cpp"):
         for names in re.findall(r'\badd(?:_flag)?\(\s*"(-[^"]+)"', source.read_text()):
             added |= set(names.split(","))
     report.check(f"--help-all shows the {len(added)} options of src/cli", len(added) > 60 and added <= shown,
                  added - shown)
     unknown = []
-    for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
+    for page in [PROJECT / "README.md", *sorted((PROJECT / "docs").rglob("*.md"))]:
         text = page.read_text().replace("\\\n", " ")
         for name, rest in re.findall(r"(?m)^(?:\$ )?tonewright (\w+)\b([^|\n]*)", text):
             if name in everything:
@@ -113,7 +118,7 @@ def check_all_options(report, command, commands):
     report.check("documents use options that the help has", not unknown, unknown)
 
 
-def check_width(report, command):
+def test_width(report, command):
     def widest(text):
         return max(map(len, text.split("\nExample")[0].splitlines()))
 
@@ -124,44 +129,19 @@ def check_width(report, command):
     report.check("a terminal of 60 columns", widest(on_terminal(command, "chart", "--help", columns=60)) <= 60)
 
 
-def check_readme(report, command):
+def test_readme(report, command, scratch):
     """The commands of Quick start, as they are printed, where the repository's files are."""
-    section = re.search(r"## Quick start\n(.*?)\n## ", (ROOT / "README.md").read_text(), re.S)[1]
+    section = re.search(r"## Quick start\n(.*?)\n## ", (PROJECT / "README.md").read_text(), re.S)[1]
     lines = [line for block in re.findall(r"```\n(.*?)```", section, re.S) for line in block.splitlines()]
     report.check(f"README: {len(lines)} commands", len(lines) >= 6, lines)
     if shutil.which("oiiotool") is None:
         lines = [line for line in lines if not line.startswith("oiiotool")]
-    with tempfile.TemporaryDirectory() as scratch:
-        (Path(scratch) / "ocio_config").symlink_to(ROOT / "ocio_config")
-        binaries = Path(scratch) / "build" / "release" / "bin"
-        binaries.parent.mkdir(parents=True)
-        binaries.symlink_to(Path(command).parent)
-        done = subprocess.run(["bash", "-e", "-c", "\n".join(lines)], cwd=scratch, capture_output=True, text=True, check=False)
-        written = {path.name for path in Path(scratch).iterdir()}
-        wanted = {name for line in lines for name in re.findall(r"\S+\.(?:exr|png|cube)\b", line)}
-        report.check(f"README: they run, and write {', '.join(sorted(wanted))}",
-                     done.returncode == 0 and len(wanted) >= 4 and wanted <= written, (done.stderr, wanted - written))
-
-
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=Path)
-    command = str(parser.parse_args().command.resolve())
-    report = Report()
-    overview = help_of(command, "--help")
-    commands = [name for name, _ in entries_of(overview) if not name.startswith("-")]
-    report.check(f"{len(commands)} commands", {"apply", "bake", "config", "verify"} <= set(commands), commands)
-    wide = [line for line in overview.splitlines() if len(line) > 80]
-    report.check("--help: at most 80 columns", not wide, wide)
-    whole = help_of(command, "--help-all")
-    report.check("--help-all has the help of every command",
-                 all(help_of(command, name, "--help-all") in whole for name in commands))
-    check_pages(report, command, commands)
-    check_all_options(report, command, commands)
-    check_width(report, command)
-    check_readme(report, command)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    (scratch / "ocio_config").symlink_to(PROJECT / "ocio_config")
+    binaries = scratch / "build" / "release" / "bin"
+    binaries.parent.mkdir(parents=True)
+    binaries.symlink_to(command.parent)
+    done = subprocess.run(["bash", "-e", "-c", "\n".join(lines)], cwd=scratch, capture_output=True, text=True, check=False)
+    written = {path.name for path in scratch.iterdir()}
+    wanted = {name for line in lines for name in re.findall(r"\S+\.(?:exr|png|cube)\b", line)}
+    report.check(f"README: they run, and write {', '.join(sorted(wanted))}",
+                 done.returncode == 0 and len(wanted) >= 4 and wanted <= written, (done.stderr, wanted - written))

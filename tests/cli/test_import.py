@@ -1,29 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tonewright import`: well-known shaders become the operators that are built in.
+"""`tonewright import`: well-known shaders become the operators that are built in."""
 
-    python3 tests/cli/test_import.py build/release/bin/tonewright [--npm]
-
-With --npm, the shaders are those of the npm package glsl-tone-map. The last line is `N passed, M failed`.
-"""
-
-import argparse
 import os
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
+from executed import npm_modules
+from pictures import PROJECT, need_program, run
 
-TESTS = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(TESTS / "parity" / "clients"))
-sys.path.insert(0, str(TESTS / "shader"))
-from executed import npm_modules  # noqa: E402
-from pictures import Report, run, skip  # noqa: E402
-
-SHADERS = TESTS / "data" / "glsl"
+SHADERS = PROJECT / "tests" / "data" / "glsl"
 # Rounding of a few dozen operations in double precision; the sums of AgX' polynomial and matrices cancel a hundredfold.
 # It is relative for numbers above 1.
 ROUNDING = 1e-12
@@ -91,7 +78,7 @@ def compare(report, command, what, file, operator, limit=np.inf, rgb=None):
     report.compare(what, got / size, expected / size, ROUNDING)
 
 
-def check_built_in(report, command, folder):
+def test_built_in(report, command, folder):
     negatives = np.array([[-0.2, 0.5, 1], [-1, -2, -3], [0.3, -1e-3, 4]])
     for shader, options, operator, stages in BUILT_IN:
         to = folder / "my.tone"
@@ -104,7 +91,7 @@ def check_built_in(report, command, folder):
     report.check("all shaders are compared", names == {path.name for path in SHADERS.iterdir()})
 
 
-def check_parameters(report, command, folder):
+def test_parameters(report, command, folder):
     to = folder / "lottes.tone"
     imported(command, SHADERS / "lottes.glsl", [*LOTTES[:-1], "midOut=0.267,0.1,0.5"], to)
     compare(report, command, "a uniform is a parameter", f"{to}:hdrMax=16:midOut=0.2", "lottes:hdr_max=16:mid_out=0.2")
@@ -126,7 +113,7 @@ def check_parameters(report, command, folder):
     report.check("temporaries have the names of variables", "\nva = " in text and "\nvf = " in text, text)
 
 
-def check_command(report, command, folder):
+def test_command(report, command, folder):
     gamma, other = SHADERS / "reinhard_gamma.glsl", folder / "kept.tone"
     exposure = ["--parameter", "exposure=1"]
     _, text = imported(command, gamma, exposure, other)
@@ -148,9 +135,9 @@ def check_command(report, command, folder):
     got = light_of(command, folder / "punchy.tone", np.array([[0, 0.1, 1.1]]))
     report.compare("powers of negatives are 0", got, np.array([[0, 0, 1.0]]), ROUNDING)
 
-    page = (TESTS.parent / "docs" / "tone_files.md").read_text()
+    page = (PROJECT / "docs" / "tone_files.md").read_text()
     example = re.search(r"```sh\n(cat >tonemap\.glsl .*?)```", page, re.S).group(1)
-    environment = {**os.environ, "PATH": f"{Path(command).parent}:{os.environ['PATH']}"}
+    environment = {**os.environ, "PATH": f"{command.parent}:{os.environ['PATH']}"}
     done = subprocess.run(["sh", "-ec", example], cwd=folder, env=environment, capture_output=True, text=True, check=False)
     printed = re.search(r"It prints `(film\.tone: .*?)`", page).group(1)
     report.check("the example of the docs prints what they say", printed in done.stderr, done.stderr)
@@ -192,9 +179,9 @@ def check_command(report, command, folder):
     report.check("without -o: standard output", 'curve = "x/(1 + x)"' in shown and 'id = "reinhard"' in shown, shown)
 
 
-def check_package(report, command, folder):
-    if not shutil.which("npm"):
-        skip("npm is not installed")
+def test_npm(report, command, folder):
+    """The shaders of the npm package glsl-tone-map."""
+    need_program("npm", "npm")
     package = npm_modules(command) / "glsl-tone-map"
     for shader, options, operator, limit, why in PACKAGE:
         to = folder / "my.tone"
@@ -202,25 +189,3 @@ def check_package(report, command, folder):
         if report.check(f"{shader}: imported", status == 0, text):
             compare(report, command, f"{shader} equals {operator}{why and ', ' + why}", to, operator, limit)
     report.check("all shaders are compared", {name for name, *_ in PACKAGE} == {path.name for path in package.glob("*.glsl")})
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command")
-    parser.add_argument("--npm", action="store_true")
-    arguments = parser.parse_args()
-    command = str(Path(arguments.command).resolve())
-    report = Report()
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        if arguments.npm:
-            check_package(report, command, folder)
-        else:
-            check_built_in(report, command, folder)
-            check_parameters(report, command, folder)
-            check_command(report, command, folder)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

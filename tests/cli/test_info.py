@@ -1,26 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """`tonewright info`, --layer and --subimage, --mix, and `-` as standard input and output.
 
-    python3 tests/cli/test_info.py build/release/bin/tonewright
-
-Tags of all formats are in tests/tags. The last line is `N passed, M failed`.
+Tags of all formats are in tests/tags.
 """
 
 import json
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, skip  # noqa: E402
 
-try:
-    import OpenImageIO as oiio
-except ImportError:
-    skip("OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 OK, USAGE, FILE = 0, 2, 3
 
@@ -58,7 +51,7 @@ def pixel(path, layer=""):
 
 class Command:
     def __init__(self, command, folder):
-        self.command, self.folder = Path(command).resolve(), folder
+        self.command, self.folder = command, folder
 
     def __call__(self, *arguments, data=None):
         done = subprocess.run([self.command, *map(str, arguments)], cwd=self.folder, input=data, capture_output=True,
@@ -70,7 +63,26 @@ def layer(name, red):
     return {f"{name}{c}": v for c, v in zip("RGB", (red, red / 2, red / 4))}
 
 
-def check_layers(report, run, folder):
+@pytest.fixture(scope="module")
+def folder(folder):
+    """With a file of parts, and a scene."""
+    write(folder / "parts.exr", {"depth": {"Z": 2.0}, "normal": layer("", 0.2), "rgba": layer("", 0.6)})
+    rng = np.random.default_rng(7)
+    rgb = (2.0 ** rng.uniform(-8, 5, (16, 16, 3)) * rng.choice([-0.2, 1, 1], (16, 16, 3))).astype(np.float32)
+    rgb[0, 0] = (np.nan, np.inf, 0)
+    out = oiio.ImageOutput.create(str(folder / "scene.exr"))
+    out.open(str(folder / "scene.exr"), oiio.ImageSpec(16, 16, 3, oiio.FLOAT))
+    out.write_image(rgb)
+    out.close()
+    return folder
+
+
+@pytest.fixture(scope="module")
+def run(command, folder):
+    return Command(command, folder)
+
+
+def test_layers(report, run, folder):
     linear = ("--operator", "clamp", "--display", "linear", "-d", "float")
     write(folder / "layers.exr", {"": {**layer("AO.", 0.1), **layer("Emit.", 0.3), **layer("beauty.", 0.5)}})
     code, _out, said = run("apply", "layers.exr", "o.exr", *linear)
@@ -82,7 +94,6 @@ def check_layers(report, run, folder):
                  and np.allclose(pixel(folder / "o.exr"), (0.3, 0.15, 0.075)), (said, pixel(folder / "o.exr")))
     code, _out, said = run("apply", "layers.exr", "o.exr", "--layer", "diffuse")
     report.check("an unknown layer", code == FILE and "it has no layer diffuse; expected one of AO, Emit, beauty" in said, said)
-    write(folder / "parts.exr", {"depth": {"Z": 2.0}, "normal": layer("", 0.2), "rgba": layer("", 0.6)})
     code, _out, said = run("apply", "parts.exr", "o.exr", *linear)
     report.check("the picture's part", code == OK and np.allclose(pixel(folder / "o.exr")[0], 0.6) and "subimage is 2 (rgba)" in said, said)
     for choice in ("1", "normal", "NORMAL"):
@@ -97,7 +108,7 @@ def check_layers(report, run, folder):
         report.check(f"{command[0]} --subimage", code == OK, said)
 
 
-def check_info(report, run, folder):
+def test_info(report, run, folder):
     spec = oiio.ImageSpec(6, 4, 3, "uint8")
     spec.attribute("Orientation", 6)
     out = oiio.ImageOutput.create(str(folder / "side.jpg"))
@@ -115,16 +126,7 @@ def check_info(report, run, folder):
     report.check("no picture", run("info", __file__)[0] == FILE)
 
 
-def check_mix(report, run, folder):
-    rng = np.random.default_rng(7)
-    rgb = (2.0 ** rng.uniform(-8, 5, (16, 16, 3)) * rng.choice([-0.2, 1, 1], (16, 16, 3))).astype(np.float32)
-    rgb[0, 0] = (np.nan, np.inf, 0)
-    spec = oiio.ImageSpec(16, 16, 3, oiio.FLOAT)
-    out = oiio.ImageOutput.create(str(folder / "scene.exr"))
-    out.open(str(folder / "scene.exr"), spec)
-    out.write_image(rgb)
-    out.close()
-
+def test_mix(report, run, folder):
     def shown(*options):
         run("apply", "scene.exr", "mix.exr", "-d", "float", "-q", "--exposure", "-1", *options)
         return read(folder / "mix.exr")[0]
@@ -139,7 +141,7 @@ def check_mix(report, run, folder):
         report.check(f"{' '.join(options)} is refused", code == USAGE and "mix is" in said and len(said.splitlines()) == 1, said)
 
 
-def check_streams(report, run, folder):
+def test_streams(report, run, folder):
     code, _out, _said = run("apply", "scene.exr", "file.png", "--operator", "hable")
     wanted = (folder / "file.png").read_bytes()
     data = (folder / "scene.exr").read_bytes()
@@ -159,26 +161,8 @@ def check_streams(report, run, folder):
     report.check("no temporary folder is left", not list(Path(tempfile.gettempdir()).glob("tonewright-??????/in.*")))
 
 
-def check_hints(report, run):
+def test_hints(report, run):
     for option, words in (("--gamma", "--display"), ("--autoorient", "orientation"), ("--channels", "--layer"), ("--cdl", "--lut"),
                           ("-resize", "apply --resize SIZE")):
         code, _out, said = run("apply", "scene.exr", "o.png", option, "2")
         report.check(f"{option}: a hint", code == USAGE and words in said and len(said.splitlines()) == 1, said)
-
-
-def main():
-    report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        run = Command(sys.argv[1], folder)
-        check_layers(report, run, folder)
-        check_info(report, run, folder)
-        check_mix(report, run, folder)
-        check_streams(report, run, folder)
-        check_hints(report, run)
-    print(f"{report.passed} passed, {report.failed} failed")
-    return 1 if report.failed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that define no operator: each gives one line with its place, and exit 3, in a second and 200 MB.
-
-    python3 tests/cli/test_malformed_definitions.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
+"""Files that define no operator: each gives one line with its place, and exit 3, in a second and 200 MB."""
 
 import random
 import re
-import sys
-from pathlib import Path
 
 from malformed import judge
+from pictures import PROJECT
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "docs" / "examples" / "reinhard_055.tone"
+EXAMPLE = PROJECT / "docs" / "examples" / "reinhard_055.tone"
 HEAD = 'tonewright = 1\nid = "my"\n'
 STAGE = "[[stage]]\n"
 
@@ -120,11 +114,6 @@ def malformed():
     return cases
 
 
-def main() -> int:
-    command = str(Path(sys.argv[1]).resolve())
+def test_files(report, command, scratch):
     cases = [(what, text, "") for what, text in malformed()]
-    return judge(lambda path, _: [command, "eval", path], cases, "bad.tone", 300)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    judge(report, lambda path, _: [command, "eval", path], scratch, cases, "bad.tone", 300)

@@ -1,17 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shaders that are no operator: `tonewright import` gives one line with its place, and exit 3, in a second and 200 MB.
-
-    python3 tests/cli/test_malformed_shaders.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import sys
-from pathlib import Path
+"""Shaders that are no operator: `tonewright import` gives one line with its place, and exit 3, in a second and 200 MB."""
 
 from malformed import judge
+from pictures import PROJECT
 
-SHADERS = Path(__file__).resolve().parents[1] / "data" / "glsl"
+SHADERS = PROJECT / "tests" / "data" / "glsl"
 GOOD = "vec3 f(vec3 c) {\n    return c/(c + 1.0);\n}\n"
 
 
@@ -182,10 +175,5 @@ def malformed():
     return cases
 
 
-def main() -> int:
-    command = str(Path(sys.argv[1]).resolve())
-    return judge(lambda path, target: [command, "import", path, "-o", target], malformed(), "bad.glsl", 60)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def test_files(report, command, scratch):
+    judge(report, lambda path, target: [command, "import", path, "-o", target], scratch, malformed(), "bad.glsl", 60)

@@ -1,25 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The manual pages that the build wrote: readers have no warning, options and examples are those of the help.
+"""The manual pages that the build wrote: readers have no warning, options and examples are those of the help."""
 
-    python3 tests/cli/test_manual.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import os
 import re
-import shutil
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import SKIPPED, Report  # noqa: E402
-from test_help import entries_of, help_of, options_of  # noqa: E402
+import pytest
+from pictures import PROJECT, need_program
+from test_help import entries_of, help_of, options_of
 
-ROOT = Path(__file__).resolve().parents[2]
 # Variables that libraries read for us.
 OF_LIBRARIES = {"OIIO_LIBRARY_PATH", "TMPDIR"}
 # So wide that no line of code wraps.
@@ -37,20 +26,54 @@ def sections_of(text):
     return {title: body.splitlines() for title, body in zip(parts[1::2], parts[2::2])}
 
 
-def check_readers(report, page):
-    """Returns the page as `man` shows it."""
-    status, text, warnings = run("man", "-l", "--warnings", page)
-    report.check(f"{page.name}: man", status == 0 and not warnings, warnings)
+@pytest.fixture(scope="module")
+def commands(command):
+    for tool, package in (("man", "man-db"), ("mandoc", "mandoc"), ("lexgrog", "man-db")):
+        need_program(tool, package)
+    return [name for name, _ in entries_of(help_of(command, "--help")) if not name.startswith("-")]
+
+
+@pytest.fixture(scope="module")
+def shown(command, commands):
+    """Name of a page -> (its file, exit code of `man`, text, warnings)."""
+    names = ["tonewright.1", "tonewright-tone.5", *(f"tonewright-{name}.1" for name in commands)]
+    files = {name: command.parents[1] / "man" / f"man{name[-1]}" / name for name in names}
+    return {name: (file, *run("man", "-l", "--warnings", file)) for name, file in files.items()}
+
+
+@pytest.fixture(scope="module")
+def pages(shown):
+    """Name of a page -> its sections."""
+    return {name: sections_of(text) for name, (_, _, text, _) in shown.items()}
+
+
+def test_files(report, command, shown):
+    written = [path.name for path in (command.parents[1] / "man").rglob("*.*")]
+    report.check(f"{len(shown)} pages", sorted(written) == sorted(shown), set(written) ^ set(shown))
+
+
+def test_readers(report, shown):
+    for page, status, text, warnings in shown.values():
+        report.check(f"{page.name}: man", status == 0 and not warnings, warnings)
+        check_text(report, page, text)
+
+
+def check_text(report, page, text):
     status, findings, _ = run("mandoc", "-T", "lint", "-W", "warning", page)
     report.check(f"{page.name}: mandoc", status == 0 and not findings, findings)
     status, name, _ = run("lexgrog", page)
     report.check(f"{page.name}: lexgrog finds its name", status == 0 and f'"{page.stem} - ' in name, name)
     left = re.findall(r".*(?:\\f|\]\(|`|\|---).*", text)
     report.check(f"{page.name}: no markup is left", not left, left)
-    return sections_of(text)
 
 
-def check_command(report, command, name, sections):
+def test_options(report, command, commands, pages):
+    check_options(report, command, "tonewright", pages["tonewright.1"])
+    for name in commands:
+        check_options(report, command, name, pages[f"tonewright-{name}.1"])
+
+
+def check_options(report, command, name, sections):
     arguments = [] if name == "tonewright" else [name]
     text = help_of(command, *arguments, *(["--help-all"] if arguments else ["--help"]))
     lines = [line for title in ("OPTIONS", "COMMANDS AND OPTIONS") for line in sections.get(title, [])]
@@ -66,10 +89,10 @@ def check_command(report, command, name, sections):
     report.check(f"{name}: the {len(examples)} examples of its help", examples and set(examples) <= set(shown), (examples, shown))
 
 
-def check_environment(report, pages):
+def test_environment(report, pages):
     """The pages explain the variables that the source reads, and no others."""
     used = set()
-    for path in (ROOT / "src").rglob("*.cpp"):
+    for path in (PROJECT / "src").rglob("*.cpp"):
         text = path.read_text()
         if "getenv" in text:
             used |= set(re.findall(r'"([A-Z][A-Z_]*[A-Z])"', text))
@@ -82,10 +105,10 @@ def check_environment(report, pages):
                  explained ^ (used | OF_LIBRARIES))
 
 
-def check_tone_files(report, sections):
-    document = (ROOT / "docs" / "tone_files.md").read_text()
+def test_tone_files(report, pages):
+    document = (PROJECT / "docs" / "tone_files.md").read_text()
     reference = document[document.index("## The file"):]
-    shown = {line.strip() for lines in sections.values() for line in lines}
+    shown = {line.strip() for lines in pages["tonewright-tone.5"].values() for line in lines}
     keys = re.findall(r"(?m)^\| `([^`]+)`", reference)
     missing = [key for key in keys if not any(line.startswith(key) for line in shown)]
     report.check(f"tonewright-tone: {len(keys)} keys and stages", len(keys) >= 20 and not missing, missing)
@@ -95,36 +118,7 @@ def check_tone_files(report, sections):
     report.check(f"tonewright-tone: {len(code)} lines of code", len(code) >= 30 and not missing, missing)
 
 
-def check_installation(report, build, pages):
-    with tempfile.TemporaryDirectory() as prefix:
-        status, _, errors = run("cmake", f"-DCMAKE_INSTALL_PREFIX={prefix}", "-P", build / "src" / "cmake_install.cmake")
-        installed = sorted(path.name for path in (Path(prefix) / "share" / "man").rglob("*.[15]"))
-        report.check(f"{len(pages)} pages are installed", status == 0 and installed == sorted(pages), (errors, installed))
-
-
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    missing = [tool for tool in ("man", "mandoc", "lexgrog") if not shutil.which(tool)]
-    if missing:
-        print("not installed:", *missing)
-        return SKIPPED
-    report = Report()
-    build = command.parents[1]
-    commands = [name for name, _ in entries_of(help_of(command, "--help")) if not name.startswith("-")]
-    wanted = ["tonewright.1", "tonewright-tone.5", *(f"tonewright-{name}.1" for name in commands)]
-    written = [path.name for path in (build / "man").rglob("*.*")]
-    report.check(f"{len(wanted)} pages", sorted(written) == sorted(wanted), set(written) ^ set(wanted))
-    pages = {name: check_readers(report, build / "man" / f"man{name[-1]}" / name) for name in wanted}
-    check_command(report, command, "tonewright", pages["tonewright.1"])
-    for name in commands:
-        check_command(report, command, name, pages[f"tonewright-{name}.1"])
-    check_environment(report, pages)
-    check_tone_files(report, pages["tonewright-tone.5"])
-    check_installation(report, build, wanted)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def test_installation(report, command, scratch, pages):
+    status, _, errors = run("cmake", f"-DCMAKE_INSTALL_PREFIX={scratch}", "-P", command.parents[1] / "src" / "cmake_install.cmake")
+    installed = sorted(path.name for path in (scratch / "share" / "man").rglob("*.[15]"))
+    report.check(f"{len(pages)} pages are installed", status == 0 and installed == sorted(pages), (errors, installed))

@@ -1,24 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tonewright plot`: its lines are what `tonewright eval` gives, as SVG and as pixels.
+"""`tonewright plot`: its lines are what `tonewright eval` gives, as SVG and as pixels."""
 
-    python3 tests/cli/test_plot.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, evaluate, pq_light, read_rgb, run  # noqa: E402
+from pictures import evaluate, pq_light, read_rgb, run
 
 SVG = "{http://www.w3.org/2000/svg}"
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
@@ -77,12 +66,12 @@ def check_lines(report, command, what, plot, expected):
         report.bound(f"{what}: {name} between them, pixels", plot.unit * np.abs(line - function(between)).max(), LINE)
 
 
-def check_svg(report, command, folder):
+def test_svg(report, command, scratch):
     operators = ["hable", "reinhard_extended:white=2.5", "agx_blender:look=punchy", "aces_hill:threejs"]
     arguments = {"hable": ["hable"], "reinhard_extended:white=2.5": ["reinhard_extended", "--set", "white=2.5"],
                  "agx_blender:look=punchy": ["agx_blender", "--look", "punchy"],
                  "aces_hill:threejs": ["aces_hill:threejs"], "no_tone_mapping": ["clamp"]}
-    path = folder / "curves.svg"
+    path = scratch / "curves.svg"
     options = ["--exposure", "0.5", "--input", "acescg"]
 
     def codes(name):
@@ -95,7 +84,7 @@ def check_svg(report, command, folder):
                                                  "+10", "100 %"} <= set(plot.words), plot.words)
     report.check("code: colors differ", len(set(plot.colors.values())) == len(plot.colors))
     report.check("code: nothing from elsewhere", not re.search(r"<script|href|url\(|@import|<image", plot.text))
-    again = folder / "again.svg"
+    again = scratch / "again.svg"
     run(command, "plot", *operators, *options, "-o", again)
     report.check("the same bytes again", again.read_text() == plot.text)
     run(command, "plot", *operators, *options, "-o", path, "--y", "light", "--dark", "--width", "900", "--title", "A & B")
@@ -110,8 +99,8 @@ def check_svg(report, command, folder):
         for name in arguments})
 
 
-def check_hdr(report, command, folder):
-    path = folder / "hdr.svg"
+def test_hdr(report, command, scratch):
+    path = scratch / "hdr.svg"
     arguments = ["--display", "rec2100_pq", "--reference-white", "203"]
     operators = ["aces_20", "gt7", "hable"]
 
@@ -129,9 +118,9 @@ def check_hdr(report, command, folder):
         for name in operators})
 
 
-def check_one(report, command, folder):
+def test_one(report, command, scratch):
     """What is said of one operator; grays that are shown in another color; lines that are the same."""
-    path = folder / "one.svg"
+    path = scratch / "one.svg"
     run(command, "plot", "hable", "--set", "white=4", "-o", path)
     plot = Plot(path)
     value = grays(command, [0], "hable", "--set", "white=4")[0, 1]
@@ -166,14 +155,14 @@ def points_of_words(plot):
     return np.array(points)
 
 
-def check_font(report, command, folder):
+def test_font(report, command, scratch):
     """SVG files and pictures show the same letters at the same places: where the SVG has strokes, the picture has ink."""
-    svg, png = folder / "font.svg", folder / "font.png"
+    svg, png = scratch / "font.svg", scratch / "font.png"
     arguments = ["plot", "hable", "aces_13", "--title", "QWERTYUIOP asdfghjkl; (zxcvbnm) 1234567890"]
     run(command, *arguments, "-o", svg)
     run(command, *arguments, "-o", png, "--width", 1920)
     points = np.floor(points_of_words(Plot(svg)) * 3).astype(int)
-    pixels = 255 * read_rgb(png, folder)
+    pixels = 255 * read_rgb(png, scratch)
     ink = np.array([0x24, 0x29, 0x2f])
     off = np.abs(pixels[points[:, 1], points[:, 0]] - ink).max(axis=1)
     report.check("font: letters of the SVG", len(points) > 800, len(points))
@@ -185,14 +174,14 @@ def check_font(report, command, folder):
     report.check("font: words with other letters are text", shown == ["Été"], shown)
 
 
-def check_pixels(report, command, folder):
-    svg, png = folder / "same.svg", folder / "same.png"
+def test_pixels(report, command, scratch):
+    svg, png = scratch / "same.svg", scratch / "same.png"
     operators = ["agx_sobotka", "hable", "aces_13"]
     run(command, "plot", *operators, "-o", svg)
     plot = Plot(svg)
     for width, arguments in [(1280, []), (700, ["--width", "700"])]:
         run(command, "plot", *operators, "-o", png, *arguments)
-        pixels = np.round(255 * read_rgb(png, folder)).astype(int)
+        pixels = np.round(255 * read_rgb(png, scratch)).astype(int)
         scale = width / 640
         height = round(float(plot.root.get("height")) * scale)
         report.check(f"png of {width}: {width} x {height}", pixels.shape == (height, width, 3), pixels.shape)
@@ -204,14 +193,14 @@ def check_pixels(report, command, folder):
             report.bound(f"png of {width}: {name} is where it is in the SVG, code values", np.abs(at - color).max(), 40,
                          f"{at}, expected {color}, {index}")
         report.check(f"png of {width}: the page is white", (pixels[-1, :, :] == 255).all())
-    run(command, "plot", "hable", "-o", folder / "same.jpg", "--dark")
-    report.check("jpg: a JPEG file", (folder / "same.jpg").read_bytes()[:3] == b"\xff\xd8\xff")
+    run(command, "plot", "hable", "-o", scratch / "same.jpg", "--dark")
+    report.check("jpg: a JPEG file", (scratch / "same.jpg").read_bytes()[:3] == b"\xff\xd8\xff")
 
 
-def check_many(report, command, folder):
+def test_many(report, command, scratch):
     """Too many lines for one graph: a small graph for each."""
     names = ["hable", "agx_sobotka", "aces_13", "reinhard", "lottes", "gt7", "uchimura", "khronos_neutral", "drago"]
-    path = folder / "many.svg"
+    path = scratch / "many.svg"
     run(command, "plot", *names, "-o", path)
     plot = Plot(path)
     report.check("many: a small graph for each", {f"small-{n}" for n in names} <= set(plot.small), plot.small)
@@ -219,14 +208,14 @@ def check_many(report, command, folder):
     report.check("a few: none", not Plot(path).small)
 
 
-def check_pdf(report, command, folder):
+def test_pdf(report, command, scratch):
     """The words of the SVG file, which a reader finds, and its lines, as pixels."""
-    svg, pdf = folder / "same.svg", folder / "same.pdf"
+    svg, pdf = scratch / "same.svg", scratch / "same.pdf"
     names = ["hable", "agx_sobotka"]
     run(command, "plot", *names, "-o", svg, "--title", "A (B)")
     run(command, "plot", *names, "-o", pdf, "--title", "A (B)")
     plot = Plot(svg)
-    again = folder / "again.pdf"
+    again = scratch / "again.pdf"
     run(command, "plot", *names, "-o", again, "--title", "A (B)")
     report.check("pdf: the same bytes again", again.read_bytes() == pdf.read_bytes())
     facts = dict(re.findall(r"(?m)^([^:]+): +(.*)$", run("pdfinfo", pdf)))
@@ -237,8 +226,8 @@ def check_pdf(report, command, folder):
     words = set(run("pdftotext", "-layout", pdf, "-").split())
     wanted = {word.replace("\N{MINUS SIGN}", "-") for text in plot.words for word in text.split()}
     report.check("pdf: the words of the SVG", wanted <= words, wanted - words)
-    run("pdftoppm", "-png", "-r", "144", "-singlefile", pdf, folder / "page")
-    pixels = np.round(255 * read_rgb(folder / "page.png", folder)).astype(int)
+    run("pdftoppm", "-png", "-r", "144", "-singlefile", pdf, scratch / "page")
+    pixels = np.round(255 * read_rgb(scratch / "page.png", scratch)).astype(int)
     for name in names:
         x, y = plot.pixel(-1.5, np.interp(-1.5, *plot.lines[name]))
         color = np.array([int(plot.colors[name][i:i + 2], 16) for i in (1, 3, 5)])
@@ -246,23 +235,23 @@ def check_pdf(report, command, folder):
         report.bound(f"pdf: {name} is where it is in the SVG, code values", np.abs(at - color).max(), 60, f"{at}, expected {color}")
 
 
-def check_program_alone(report, command, folder):
+def test_program_alone(report, command, scratch):
     """SVG files need no OpenImageIO: the picture commands are not even there."""
-    alone = folder / "alone"
+    alone = scratch / "alone"
     alone.mkdir()
     shutil.copy(command, alone / "tonewright")
-    done = subprocess.run([alone / "tonewright", "plot", "hable", "-o", folder / "alone.svg"], capture_output=True,
+    done = subprocess.run([alone / "tonewright", "plot", "hable", "-o", scratch / "alone.svg"], capture_output=True,
                           text=True, check=False)
-    report.check("the program alone writes SVG", done.returncode == 0 and (folder / "alone.svg").exists(), done.stderr)
-    done = subprocess.run([alone / "tonewright", "plot", "hable", "-o", folder / "alone.png"], capture_output=True,
+    report.check("the program alone writes SVG", done.returncode == 0 and (scratch / "alone.svg").exists(), done.stderr)
+    done = subprocess.run([alone / "tonewright", "plot", "hable", "-o", scratch / "alone.png"], capture_output=True,
                           text=True, check=False)
     report.check("and needs its module for pixels", done.returncode == FILE and "picture_commands.so" in done.stderr,
                  done.stderr)
 
 
-def check_errors(report, command, folder):
-    out = folder / "bad.svg"
-    (folder / "file").write_text("")
+def test_errors(report, command, scratch):
+    out = scratch / "bad.svg"
+    (scratch / "file").write_text("")
     many = [f"reinhard_extended:white={white}" for white in range(1, 26)]
     cases = [
         (USAGE, ["hablee"], ["hablee", "did you mean hable?"]),
@@ -279,10 +268,10 @@ def check_errors(report, command, folder):
         (USAGE, ["hable", "--width", "10"], ["--width", "10"]),
         (USAGE, many, ["number of operators is 25", "24"]),
         (USAGE, [], ["OPERATORS is missing"]),
-        (FILE, ["hable", "-o", folder / "none" / "x.svg"], ["none"]),
-        (FILE, ["hable", "-o", folder / "file" / "x.png"], ["file"]),
-        (FILE, ["hable", "-o", folder / "x.xyz"], ["xyz"]),
-        (FILE, ["hable", "-o", folder], [str(folder)]),
+        (FILE, ["hable", "-o", scratch / "none" / "x.svg"], ["none"]),
+        (FILE, ["hable", "-o", scratch / "file" / "x.png"], ["file"]),
+        (FILE, ["hable", "-o", scratch / "x.xyz"], ["xyz"]),
+        (FILE, ["hable", "-o", scratch], [str(scratch)]),
     ]
     for expected, arguments, words in cases:
         arguments = [str(a) for a in arguments]
@@ -294,26 +283,3 @@ def check_errors(report, command, folder):
         report.check(f"error: {' '.join(arguments)[:60]}", ok, f"exit {done.returncode}: {done.stderr}")
     done = subprocess.run([str(command), "plot", "hable"], capture_output=True, text=True, check=False)
     report.check("error: no -o", done.returncode == USAGE and "-o" in done.stderr, done.stderr)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        check_svg(report, command, folder)
-        check_hdr(report, command, folder)
-        check_one(report, command, folder)
-        check_pixels(report, command, folder)
-        check_font(report, command, folder)
-        check_many(report, command, folder)
-        check_pdf(report, command, folder)
-        check_program_alone(report, command, folder)
-        check_errors(report, command, folder)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

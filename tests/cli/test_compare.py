@@ -1,21 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tonewright compare` and `apply --false-color`: the pixels of sheets and splits are those of `tonewright apply`.
+"""`tonewright compare` and `apply --false-color`: the pixels of sheets and splits are those of `tonewright apply`."""
 
-    python3 tests/cli/test_compare.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import PROJECT, Report, read_rgb, run, share_of, share_of_refusals, unstack, views, write_exr  # noqa: E402
+import pytest
+from pictures import PROJECT, read_rgb, run, share_of_refusals, unstack, views, write_exr
 
 USAGE, FILE = 2, 3
 WIDTH, HEIGHT = 48, 32
@@ -34,8 +25,8 @@ def scene():
 class Bench:
     """Data of all checks: the command, a folder, a picture in it, and the output of `apply`."""
 
-    def __init__(self, report, command, folder):
-        self.report, self.command, self.folder = report, command, folder
+    def __init__(self, command, folder):
+        self.command, self.folder = command, folder
         self.picture = folder / "scene.exr"
         write_exr(self.picture, unstack(scene()))
         self.results = {}
@@ -60,6 +51,11 @@ class Bench:
         return self.compared("--cell-width", WIDTH, *arguments, **options)
 
 
+@pytest.fixture(scope="module")
+def bench(command, folder):
+    return Bench(command, folder)
+
+
 def places(sheet, cell):
     """(row, column) of each place where the sheet has these pixels."""
     height, width, _ = cell.shape
@@ -72,7 +68,8 @@ def places(sheet, cell):
     return [(y, x) for y, x in np.argwhere(possible) if (sheet[y:y + height, x:x + width] == cell).all()]
 
 
-def check_sheet(bench):
+@pytest.mark.share(2)
+def test_sheet(report, bench):
     """Each cell at its own size is what `apply` writes, in the order of the operators."""
     cells = {"hable": ["hable"], "reinhard_extended:white=2.5": ["reinhard_extended", "--set", "white=2.5"],
              "agx_blender:look=punchy": ["agx_blender", "--look", "punchy"], "aces_hill:threejs": ["aces_hill:threejs"],
@@ -81,16 +78,17 @@ def check_sheet(bench):
         sheet = bench.sheet(*cells, *options, "--columns", 3)
         found = [places(sheet, bench.applied("--operator", *arguments, *options)) for arguments in cells.values()]
         what = " ".join(options) or "as it is"
-        if bench.report.check(f"sheet, {what}: each cell is what apply writes", all(len(f) == 1 for f in found), found):
+        if report.check(f"sheet, {what}: each cell is what apply writes", all(len(f) == 1 for f in found), found):
             at = np.array(found)[:, 0]
-            bench.report.check(f"sheet, {what}: in order, in three columns",
+            report.check(f"sheet, {what}: in order, in three columns",
                                (at[[0, 3], 1] == at[0, 1]).all() and (at[:3, 0] == at[0, 0]).all() and
                                at[0, 1] < at[1, 1] < at[2, 1] and at[3, 0] > at[0, 0] + HEIGHT, at.tolist())
     statistics = bench.applied("--operator", "drago", "--statistics", "defaults")
-    bench.report.check("drago without statistics is another picture", not places(bench.sheet("drago"), statistics))
+    report.check("drago without statistics is another picture", not places(bench.sheet("drago"), statistics))
 
 
-def check_titles(bench):
+@pytest.mark.share(2)
+def test_titles(report, bench):
     """Below a cell stands the operator's title; of a look, the name of its view in the config. Both can be typed."""
     width, margin, line = 200, 10, 15  # of a sheet of such cells: make_contact_sheet()
     below = margin + round(width * HEIGHT / WIDTH)
@@ -106,24 +104,26 @@ def check_titles(bench):
     for operator, title in titles.items():
         sheet = bench.compared(operator, "--cell-width", width)
         found = [other for other, strip in strips.items() if places(sheet, strip)]
-        bench.report.check(f"sheet: the title of {operator} is {title}", found == [title], found)
+        report.check(f"sheet: the title of {operator} is {title}", found == [title], found)
         same = bench.applied("--operator", title) == bench.applied("--operator", operator)
-        bench.report.check(f"{title} can be typed", same.all())
+        report.check(f"{title} can be typed", same.all())
 
 
-def check_pictures(bench):
+@pytest.mark.share(2)
+def test_pictures(report, bench):
     """Full size for any size of cells; the files are those of `apply`."""
     cells = {"hable": ["hable"], "agx_blender:look=punchy": ["agx_blender", "--look", "punchy"], "drago": ["drago"]}
     folder = bench.folder / "whole"
     bench.compared("--cell-width", 16, *cells, "--pictures", folder, "--exposure", "1")
     names = ["agx_blender_look_punchy.png", "drago.png", "hable.png"]
-    bench.report.check("--pictures: a file for each operator", sorted(p.name for p in folder.iterdir()) == names)
+    report.check("--pictures: a file for each operator", sorted(p.name for p in folder.iterdir()) == names)
     for (operator, arguments), name in zip(cells.items(), ("hable.png", "agx_blender_look_punchy.png", "drago.png")):
         expected = bench.applied("--operator", *arguments, "--exposure", "1")
-        bench.report.check(f"--pictures: {operator} is what apply writes", (bench.bytes_of(folder / name) == expected).all())
+        report.check(f"--pictures: {operator} is what apply writes", (bench.bytes_of(folder / name) == expected).all())
 
 
-def check_scaled(bench):
+@pytest.mark.share(2)
+def test_scaled(report, bench):
     """A wide picture of one color with one light: the operator that measures takes the light of the whole picture."""
     rgb = np.full((64, 192, 3), 0.3, np.float32) * [1, 0.5, 0.25]
     rgb[0, 0] = 500
@@ -131,31 +131,33 @@ def check_scaled(bench):
     write_exr(path, unstack(rgb))
     sheet = bench.sheet("drago", picture=path)
     whole = bench.applied("--operator", "drago", picture=path)
-    bench.report.check("a small cell has the statistics of the whole picture", bool(places(sheet, whole[40:52, 40:80])))
+    report.check("a small cell has the statistics of the whole picture", bool(places(sheet, whole[40:52, 40:80])))
 
 
-def check_default(bench):
+@pytest.mark.share(2)
+def test_default(report, bench):
     """Without operators: the active views of the config that are not for HDR, in its order."""
     config = (PROJECT / "ocio_config" / "config.ocio").read_text()
     line = next(line for line in config.splitlines() if line.startswith("active_views: ["))
     names = {view: [operator] for operator, view in views(bench.command)}
     names["AgX Punchy"] = ["agx_blender", "--look", "punchy"]
     active = [view for view in line[len("active_views: ["):-1].split(", ") if view in names and view != "False Color"]
-    bench.report.check(f"the config has {len(active)} views with operators", len(active) >= 10, line)
+    report.check(f"the config has {len(active)} views with operators", len(active) >= 10, line)
     sheet = bench.sheet()
     found = [places(sheet, bench.applied("--operator", *names[view])) for view in active]
-    bench.report.check("default: one cell for each of them", all(len(f) == 1 for f in found), list(zip(active, found)))
+    report.check("default: one cell for each of them", all(len(f) == 1 for f in found), list(zip(active, found)))
     order = [tuple(f[0]) for f in found if f]
-    bench.report.check("default: in their order", order == sorted(order), order)
+    report.check("default: in their order", order == sorted(order), order)
 
 
-def check_false_color(bench):
+@pytest.mark.share(2)
+def test_false_color(report, bench):
     for options in ([], ["--exposure", "-2", "--input", "lin_rec2020"]):
         expected = bench.applied("--operator", "false_color", *options)
-        bench.report.check(f"apply --false-color {' '.join(options)}",
+        report.check(f"apply --false-color {' '.join(options)}",
                            (bench.applied("--false-color", *options) == expected).all())
         sheet = bench.sheet("hable", "--false-color", "--columns", 1, *options)
-        bench.report.check(f"sheet --false-color {' '.join(options)}", len(places(sheet, expected)) == 1)
+        report.check(f"sheet --false-color {' '.join(options)}", len(places(sheet, expected)) == 1)
     # The legend has the color of every stop from -7 to +7, from left to right.
     stops = 0.18 * 2.0 ** np.arange(-7, 8)
     ramp = bench.folder / "ramp.exr"
@@ -166,18 +168,19 @@ def check_false_color(bench):
     for row in sheet:
         changes = row[np.flatnonzero(np.r_[True, (row[1:] != row[:-1]).any(axis=1)])]
         rows.append(len(changes) == 17 and (changes[1:-1] == colors).all())
-    bench.report.check("the legend has the colors of 15 stops", sum(rows) >= 8, sum(rows))
+    report.check("the legend has the colors of 15 stops", sum(rows) >= 8, sum(rows))
     # `apply --legend` draws it below the picture, whose pixels stay.
     with_legend = bench.applied("--false-color", "--legend")
-    bench.report.check("apply --legend: the picture", len(places(with_legend, bench.applied("--false-color"))) == 1)
+    report.check("apply --legend: the picture", len(places(with_legend, bench.applied("--false-color"))) == 1)
     rows = [row[np.flatnonzero(np.r_[True, (row[1:] != row[:-1]).any(axis=1)])] for row in with_legend]
     rows = sum(len(row) == 17 and (row[1:-1] == colors).all() for row in rows)
-    bench.report.check("apply --legend: the colors of 15 stops", rows >= 8, rows)
+    report.check("apply --legend: the colors of 15 stops", rows >= 8, rows)
     plain = bench.compared("hable", "--cell-width", 200)
-    bench.report.check("and is not there without", plain.shape[0] < sheet.shape[0])
+    report.check("and is not there without", plain.shape[0] < sheet.shape[0])
 
 
-def check_difference(bench):
+@pytest.mark.share(2)
+def test_difference(report, bench):
     planes = []
     for name in ("hable", "aces_13"):
         out = bench.folder / "shown.exr"
@@ -188,30 +191,32 @@ def check_difference(bench):
     (y, x), = places(sheet, bench.applied("--operator", "aces_13"))
     margin = x - places(sheet, bench.applied("--operator", "hable"))[0][1]
     cell = sheet[y:y + HEIGHT, x + margin:x + margin + WIDTH]
-    bench.report.bound("the difference, times 5, in codes", np.abs(cell - 255 * expected).max(), 0.51)
+    report.bound("the difference, times 5, in codes", np.abs(cell - 255 * expected).max(), 0.51)
 
 
-def check_split(bench):
+@pytest.mark.share(2)
+def test_split(report, bench):
     left, right = bench.applied("--operator", "clamp"), bench.applied("--operator", "agx_sobotka")
     for position in (0, 0.3, 1):
         at = round(position * WIDTH)
         shown = bench.compared("clamp", "agx_sobotka", "--split", position, "--no-labels")
         expected = np.concatenate([left[:, :at], right[:, at:]], axis=1)
-        bench.report.check(f"split at {position}", shown.shape == expected.shape and (shown == expected).all())
+        report.check(f"split at {position}", shown.shape == expected.shape and (shown == expected).all())
     for position in (0.3, 1):
         at = round(position * HEIGHT)
         shown = bench.compared("clamp", "agx_sobotka", "--split", position, "--no-labels", "--horizontal")
         expected = np.concatenate([left[:at], right[at:]])
-        bench.report.check(f"split at {position}, horizontal", shown.shape == expected.shape and (shown == expected).all())
+        report.check(f"split at {position}, horizontal", shown.shape == expected.shape and (shown == expected).all())
     shown = bench.compared("clamp", "agx_sobotka", "--split", 0.5)
     around = places(shown, left[:, :22]), places(shown, right[:, 26:])
-    bench.report.check("labels: the pixels beside the line", all(len(p) == 1 for p in around), around)
-    bench.report.check("labels: stand below", shown.shape[0] > HEIGHT + 10 and around[0][0][0] == 0)
+    report.check("labels: the pixels beside the line", all(len(p) == 1 for p in around), around)
+    report.check("labels: stand below", shown.shape[0] > HEIGHT + 10 and around[0][0][0] == 0)
     measured = bench.compared("drago", "hable", "--split", 1, "--no-labels")
-    bench.report.check("split: statistics", (measured == bench.applied("--operator", "drago")).all())
+    report.check("split: statistics", (measured == bench.applied("--operator", "drago")).all())
 
 
-def check_other_pictures(bench):
+@pytest.mark.share(2)
+def test_other_pictures(report, bench):
     rgb = np.abs(np.nan_to_num(scene(), nan=0, posinf=9, neginf=0))
     alpha = np.full(rgb.shape[:2], 0.5, np.float32)
     path = bench.folder / "alpha.exr"
@@ -220,28 +225,28 @@ def check_other_pictures(bench):
     run(bench.command, "apply", path, out, "--operator", "hable", "-d", "float")
     expected = 255 * read_rgb(out, bench.folder)
     shown = bench.compared("hable", "clamp", "--split", 1, "--no-labels", picture=path)
-    bench.report.bound("alpha: color is shown on black", np.abs(shown - expected).max(), 0.51)
+    report.bound("alpha: color is shown on black", np.abs(shown - expected).max(), 0.51)
     gray = bench.folder / "gray.exr"
     write_exr(gray, {"Y": rgb[..., 0]})
     shown = bench.sheet("hable", picture=gray)
     same = (shown == shown[..., :1]).all(axis=-1)
-    bench.report.check("gray stays gray", same.all() and len(np.unique(shown)) > 50)
+    report.check("gray stays gray", same.all() and len(np.unique(shown)) > 50)
     tiny = bench.folder / "tiny.exr"
     write_exr(tiny, unstack(rgb[:2, :2]))
     shown = bench.sheet("clamp", picture=tiny)
     blocks = np.repeat(np.repeat(bench.applied("--operator", "clamp", picture=tiny), 24, axis=0), 24, axis=1)
-    bench.report.check("tiny pictures: pixels are repeated", len(places(shown, blocks)) == 1)
+    report.check("tiny pictures: pixels are repeated", len(places(shown, blocks)) == 1)
     out = bench.folder / "sheet.jpg"
     run(bench.command, "compare", bench.picture, "-o", out, "hable", "aces_13")
-    bench.report.check("jpg: a JPEG file", out.read_bytes()[:3] == b"\xff\xd8\xff")
+    report.check("jpg: a JPEG file", out.read_bytes()[:3] == b"\xff\xd8\xff")
     first = bench.folder / "compared.png"
     bench.sheet("hable", "drago")
     once = first.read_bytes()
     bench.sheet("hable", "drago")
-    bench.report.check("the same bytes again", first.read_bytes() == once)
+    report.check("the same bytes again", first.read_bytes() == once)
 
 
-def check_errors(bench):
+def test_errors(report, bench):
     folder, picture = bench.folder, str(bench.picture)
     out = folder / "bad.png"
     (folder / "broken.exr").write_bytes(bench.picture.read_bytes()[:500])
@@ -285,23 +290,5 @@ def check_errors(bench):
         done = subprocess.run([str(bench.command), *arguments], capture_output=True, text=True, check=False)
         ok = done.returncode == expected and done.stderr.startswith("tonewright: ") and done.stderr.count("\n") == 1
         ok = ok and all(word in done.stderr for word in words) and not out.exists()
-        bench.report.check(f"error: {' '.join(Path(a).name for a in arguments)}", ok,
+        report.check(f"error: {' '.join(Path(a).name for a in arguments)}", ok,
                            f"exit {done.returncode}: {done.stderr}")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        bench = Bench(report, command, Path(scratch))
-        for check in share_of([check_sheet, check_titles, check_scaled, check_default, check_pictures, check_false_color,
-                               check_difference, check_split, check_other_pictures], 2):
-            check(bench)
-        check_errors(bench)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

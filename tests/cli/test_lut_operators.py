@@ -1,28 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""LUT files as operators, against NumPy and OpenColorIO's own reading of the same files.
+"""LUT files as operators, against NumPy and OpenColorIO's own reading of the same files."""
 
-    python3 tests/cli/test_lut_operators.py build/release/bin/tonewright [build/release/python] [build/release/lib/OpenImageIO-X.Y]
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import json
 import os
 import struct
 import subprocess
-import sys
-import tempfile
 import time
 import warnings
-from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 import PyOpenColorIO as ocio
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import ALL, Report, acescct_encode, evaluate, read_rgb, run  # noqa: E402
+import pytest
+from pictures import ALL, acescct_encode, evaluate, read_rgb, run
 
 # Linear Rec.709 to ACEScg, by the published conversion of both to XYZ with Bradford's adaptation (SMPTE RP 177, S-2014-004).
 TO_AP1 = np.array([[0.613097402, 0.339523146, 0.047379451], [0.070193722, 0.916353879, 0.013452399],
@@ -108,37 +98,47 @@ def write_picture(path, pixels, kind="float"):
     out.close()
 
 
-def check_formats(report, command, scratch):
-    write_cube(scratch / "film.cube", 33)
-    write_cube(scratch / "domain.cube", 17, "DOMAIN_MIN -0.1 -0.1 -0.2\nDOMAIN_MAX 1.1 1 1.2\n")
+@pytest.fixture(scope="module")
+def folder(command, folder):
+    """LUT files of many formats, a picture, and a LUT that is cut."""
+    write_cube(folder / "film.cube", 33)
+    write_cube(folder / "domain.cube", 17, "DOMAIN_MIN -0.1 -0.1 -0.2\nDOMAIN_MAX 1.1 1 1.2\n")
     rows = "".join(f"{x ** 0.5:.7f} {x ** 0.6:.7f} {x * x:.7f}\n" for x in np.linspace(0, 1, 33))
-    (scratch / "one.cube").write_text("LUT_1D_SIZE 33\n" + rows)
-    (scratch / "x.spi1d").write_text("Version 1\nFrom -0.125 1.125\nLength 5\nComponents 1\n{\n0\n.2\n.5\n.8\n1\n}\n")
-    (scratch / "x.cc").write_text('<ColorCorrection id="a"><SOPNode><Slope>1.1 1 .9</Slope><Offset>.01 0 -.01</Offset>'
+    (folder / "one.cube").write_text("LUT_1D_SIZE 33\n" + rows)
+    (folder / "x.spi1d").write_text("Version 1\nFrom -0.125 1.125\nLength 5\nComponents 1\n{\n0\n.2\n.5\n.8\n1\n}\n")
+    (folder / "x.cc").write_text('<ColorCorrection id="a"><SOPNode><Slope>1.1 1 .9</Slope><Offset>.01 0 -.01</Offset>'
                                   "<Power>1.2 1 .8</Power></SOPNode><SATNode><Saturation>.8</Saturation></SATNode>"
                                   "</ColorCorrection>")
     halves = np.nan_to_num(np.arange(65536, dtype=np.uint16).view(np.float16).astype(float))
-    (scratch / "half.clf").write_text(
+    (folder / "half.clf").write_text(
         '<?xml version="1.0" encoding="UTF-8"?>\n<ProcessList id="a" compCLFversion="3">'
         '<LUT1D inBitDepth="16f" outBitDepth="32f" halfDomain="true"><Array dim="65536 1">\n'
         + "".join(f"{x / (1 + abs(x)):.9g}\n" for x in halves) + "</Array></LUT1D></ProcessList>\n")
     for form in ("clf", "spi3d", "csp", "3dl", "lut"):
         run(command, "bake", "agx_sobotka", "--format", form, "--size", "17", "--3d", "--nodes", "sampled", "-q", "-o",
-            scratch / f"a.{form}")
+            folder / f"a.{form}")
+    with_alpha = np.concatenate([nodes(16), np.ones((16**3, 1))], axis=1)
+    write_dds(folder / "rgba16f.dds", 16, 10, with_alpha.astype("<f2").tobytes())
+    (folder / "cut.cube").write_bytes((folder / "film.cube").read_bytes()[:3000])
+    write_picture(folder / "scene.exr", COLORS[None])
+    return folder
+
+
+def test_formats(report, command, folder):
     for name in ("film.cube", "domain.cube", "one.cube", "x.spi1d", "x.cc", "half.clf", "a.clf", "a.spi3d", "a.csp", "a.3dl",
                  "a.lut"):
-        shown = evaluate(command, UNIT, f"{scratch / name}:input=none", "--display", "native")
-        report.compare(f"{name}: as OpenColorIO reads it", shown, through_ocio(scratch / name, UNIT), OCIO_FLOAT)
-    shown = evaluate(command, UNIT, f"{scratch / 'half.clf'}:input=none", "--display", "native", "--engine", "simd")
-    report.compare("half.clf, --engine simd", shown, through_ocio(scratch / "half.clf", UNIT), OCIO_FLOAT)
-    done = subprocess.run([command, "verify", f"{scratch / 'half.clf'}:input=none", "--quick"], capture_output=True, text=True,
+        shown = evaluate(command, UNIT, f"{folder / name}:input=none", "--display", "native")
+        report.compare(f"{name}: as OpenColorIO reads it", shown, through_ocio(folder / name, UNIT), OCIO_FLOAT)
+    shown = evaluate(command, UNIT, f"{folder / 'half.clf'}:input=none", "--display", "native", "--engine", "simd")
+    report.compare("half.clf, --engine simd", shown, through_ocio(folder / "half.clf", UNIT), OCIO_FLOAT)
+    done = subprocess.run([command, "verify", f"{folder / 'half.clf'}:input=none", "--quick"], capture_output=True, text=True,
                           check=False)
     report.check("half.clf: verify", done.returncode == 0 and "ocio cpu lossless" in done.stdout
                  and ("none: it cannot store the operator's tables" in done.stdout or " dctl " not in done.stdout),
                  done.stdout + done.stderr)
     raw = nodes(9).astype("<f4")
-    (scratch / "film.raw").write_bytes(raw.tobytes())
-    report.compare("film.raw", evaluate(command, UNIT, f"{scratch / 'film.raw'}:input=none", "--display", "native"),
+    (folder / "film.raw").write_bytes(raw.tobytes())
+    report.compare("film.raw", evaluate(command, UNIT, f"{folder / 'film.raw'}:input=none", "--display", "native"),
                    tetrahedral(raw, 9, UNIT), 1e-8)
 
     n = 16
@@ -148,7 +148,7 @@ def check_formats(report, command, scratch):
     for name, dxgi, texels, values in (("rgba32f", 2, with_alpha.astype("<f4").tobytes(), cube),
                                        ("rgba16f", 10, with_alpha.astype("<f2").tobytes(), cube.astype(np.float16)),
                                        ("rgb9e5", 67, packed, held)):
-        path = scratch / f"{name}.dds"
+        path = folder / f"{name}.dds"
         write_dds(path, n, dxgi, texels)
         # Single floats of the file, nine digits.
         for what in (f"{path}:input=none", None):
@@ -156,24 +156,24 @@ def check_formats(report, command, scratch):
             shown = evaluate(command, UNIT, *([what] if what else []), *options)
             report.compare(f"{name}.dds: {'operator' if what else '--lut'}", shown,
                            tetrahedral(values.astype(np.float32), n, UNIT), 2e-7)
-    light = evaluate(command, COLORS, f"{scratch / 'rgb9e5.dds'}:input=reinhard:output=linear")
+    light = evaluate(command, COLORS, f"{folder / 'rgb9e5.dds'}:input=reinhard:output=linear")
     report.compare("DDS of light, x/(x + 1) in", light, srgb(tetrahedral(held, n, COLORS / (COLORS + 1))), 1e-8)
 
     strip = cube.reshape(n, n, n, 3).transpose(1, 0, 2, 3).reshape(n, n * n, 3)
-    write_picture(scratch / "strip.exr", strip)
-    write_picture(scratch / "strip.png", strip, "uint16")
+    write_picture(folder / "strip.exr", strip)
+    write_picture(folder / "strip.png", strip, "uint16")
     for name, bound in (("strip.exr", 1e-7), ("strip.png", 0.51 / 65535)):  # a float, and half a code of 16 bits
-        shown = evaluate(command, UNIT, f"{scratch / name}:input=none", "--display", "native")
+        shown = evaluate(command, UNIT, f"{folder / name}:input=none", "--display", "native")
         report.compare(f"{name}: Unreal's layout", shown, tetrahedral(cube, n, UNIT), bound)
 
 
-def check_forms(report, command, scratch):
-    text = f"{scratch / 'film.cube'}:input=acescct:output=srgb"
+def test_forms(report, command, folder):
+    text = f"{folder / 'film.cube'}:input=acescct:output=srgb"
     wanted = tetrahedral(np.round(nodes(33), 7), 33, acescct_encode(COLORS @ TO_AP1.T))
     # The nodes are single floats (6e-8 between 0.5 and 1), and the matrix above has nine decimals.
     bound = 2e-7
     report.compare("eval: encoded, on its own display", evaluate(command, COLORS, text), wanted, bound)
-    shown = evaluate(command, COLORS, scratch / "film.cube", "--input-encoding", "acescct", "--set", "output=srgb")
+    shown = evaluate(command, COLORS, folder / "film.cube", "--input-encoding", "acescct", "--set", "output=srgb")
     report.compare("eval --input-encoding", shown, wanted, bound)
     # engine.h: the SIMD engine is within 1e-6 of the reference.
     report.compare("eval --engine simd", evaluate(command, COLORS, text, "--engine", "simd"), wanted, 1.1e-6)
@@ -181,23 +181,23 @@ def check_forms(report, command, scratch):
     light = np.where(wanted <= 0.04045, wanted / 12.92, ((wanted + 0.055) / 1.055) ** 2.4)
     report.compare("eval: on another display", shown, light ** (1 / 2.4), 1e-6)
 
-    (scratch / "sub").mkdir()
-    (scratch / "sub" / "film.tone").write_text('tonewright = 1\nid = "print"\n[output]\nkind = "code_value"\ndisplay = "srgb"\n'
+    (folder / "sub").mkdir()
+    (folder / "sub" / "film.tone").write_text('tonewright = 1\nid = "print"\n[output]\nkind = "code_value"\ndisplay = "srgb"\n'
                                                '[[stage]]\nlut = "../film.cube"\ninput = "acescct"\n')
-    tone = scratch / "sub" / "film.tone"
+    tone = folder / "sub" / "film.tone"
     report.check("a lut stage equals the LUT", np.array_equal(evaluate(command, COLORS, tone), evaluate(command, COLORS, text)))
-    (scratch / "again.tone").write_text(run(command, "list", text, "--definition"))
+    (folder / "again.tone").write_text(run(command, "list", text, "--definition"))
     report.check("list --definition reads back",
-                 np.array_equal(evaluate(command, COLORS, scratch / "again.tone"), evaluate(command, COLORS, text)))
+                 np.array_equal(evaluate(command, COLORS, folder / "again.tone"), evaluate(command, COLORS, text)))
     # Stages around a LUT, one that is not there, a live parameter.
-    between = scratch / "sub" / "between.tone"
+    between = folder / "sub" / "between.tone"
     between.write_text('tonewright = 1\nid = "between"\n[parameter.lift]\ndefault = 0.5\nmin = 0\nmax = 1\n'
                        '[parameter.kind]\nchoices = ["plain", "other"]\ndefault = "plain"\n'
                        '[[stage]]\nlut = "../film.cube"\ninput = "acescct"\nwhen = "kind == kind.other"\n'
                        '[[stage]]\ncurve = "x * lift"\n[[stage]]\nlut = "../film.cube"\ninput = "acescct"\n'
                        '[[stage]]\nclamp = [0.1, 0.9]\n')
     for setting in ("kind=plain", "kind=other"):
-        printed = scratch / "printed.tone"
+        printed = folder / "printed.tone"
         printed.write_text(run(command, "list", f"{between}:{setting}", "--definition"))
         for lift in ("lift=0.5", "lift=1"):
             report.check(f"list --definition with LUTs reads back, {setting}:{lift}", np.array_equal(
@@ -207,52 +207,51 @@ def check_forms(report, command, scratch):
     listed = run(command, "list", text)
     report.check("list: title and size", "Film Print" in listed and "33 x 33 x 33" in listed, listed)
 
-    scene = scratch / "scene.exr"
-    write_picture(scene, COLORS[None])
+    scene = folder / "scene.exr"
     # Half a code value of 8 bits, and dither of as much.
-    run(command, "apply", scene, scratch / "out.png", "--operator", text)
-    report.compare("apply: PNG", read_rgb(scratch / "out.png", scratch)[0], wanted, 1.01 / 255)
-    run(command, "apply", scene, scratch / "lut.exr", "--lut", scratch / "film.cube", "--input-encoding", "acescct")
-    report.compare("apply --lut", read_rgb(scratch / "lut.exr", scratch)[0], wanted, 1e-5)
-    run(command, "plot", text, "-o", scratch / "plot.svg")
-    report.check("plot", "Film Print" in (scratch / "plot.svg").read_text())
-    run(command, "compare", scene, text, "hable", "-o", scratch / "sheet.png")
-    report.check("compare", (scratch / "sheet.png").stat().st_size > 1000)
+    run(command, "apply", scene, folder / "out.png", "--operator", text)
+    report.compare("apply: PNG", read_rgb(folder / "out.png", folder)[0], wanted, 1.01 / 255)
+    run(command, "apply", scene, folder / "lut.exr", "--lut", folder / "film.cube", "--input-encoding", "acescct")
+    report.compare("apply --lut", read_rgb(folder / "lut.exr", folder)[0], wanted, 1e-5)
+    run(command, "plot", text, "-o", folder / "plot.svg")
+    report.check("plot", "Film Print" in (folder / "plot.svg").read_text())
+    run(command, "compare", scene, text, "hable", "-o", folder / "sheet.png")
+    report.check("compare", (folder / "sheet.png").stat().st_size > 1000)
 
     # At its own nodes and encoding, a LUT of 33 is the same LUT.
-    run(command, "bake", text, "--input-encoding", "acescct", "--size", "33", "--nodes", "sampled", "-o", scratch / "b.cube")
-    report.compare("bake: the same LUT", through_ocio(scratch / "b.cube", UNIT), through_ocio(scratch / "film.cube", UNIT), 1e-6)
-    done = run(command, "shader", text, "--language", "glsl", "-o", scratch / "film.glsl")
-    report.check("shader: a texture beside it", any(scratch.glob("*.rgba32f")) and
-                 "texelFetch" in (scratch / "film.glsl").read_text(), done)
-    options = (scratch / "film.cube", "--input-encoding", "acescct", "--set", "output=srgb")
+    run(command, "bake", text, "--input-encoding", "acescct", "--size", "33", "--nodes", "sampled", "-o", folder / "b.cube")
+    report.compare("bake: the same LUT", through_ocio(folder / "b.cube", UNIT), through_ocio(folder / "film.cube", UNIT), 1e-6)
+    done = run(command, "shader", text, "--language", "glsl", "-o", folder / "film.glsl")
+    report.check("shader: a texture beside it", any(folder.glob("*.rgba32f")) and
+                 "texelFetch" in (folder / "film.glsl").read_text(), done)
+    options = (folder / "film.cube", "--input-encoding", "acescct", "--set", "output=srgb")
     for name, *arguments in (("shader", "--language", "c"), ("check", "--json")):
         report.check(f"{name} --input-encoding", run(command, name, *options, *arguments) ==
-                     run(command, name, scratch / "film.cube", "--set", "input=acescct", "--set", "output=srgb", *arguments))
+                     run(command, name, folder / "film.cube", "--set", "input=acescct", "--set", "output=srgb", *arguments))
         done = subprocess.run([command, name, "hable", "--lut-space", "lin_ap1", *arguments], capture_output=True, text=True, check=False)
         report.check(f"{name} --lut-space: another operator", done.returncode == 2 and f"{name}: --lut-space is lin_ap1; expected a LUT "
                      "as the operator" in done.stderr, done.stderr)
 
-    config = scratch / "config"
+    config = folder / "config"
     run(command, "config", "-o", config, "--operator", text, "--name", "Film", "--views", "hable", "--displays", "srgb",
         "--profile", "2.1")
     run("oiiotool", "--colorconfig", config / "config.ocio", scene, "--ociodisplay:from=lin_rec709", "sRGB", "Film", "-o",
-        scratch / "ocio.exr")
+        folder / "ocio.exr")
     # The half-LUTs of shaper and encodings: 3e-7 each, after a LUT whose slope is about 1.5.
-    report.compare("config: the view through oiiotool", read_rgb(scratch / "ocio.exr", scratch)[0], wanted, 2e-6)
+    report.compare("config: the view through oiiotool", read_rgb(folder / "ocio.exr", folder)[0], wanted, 2e-6)
 
     # Every instruction set, OpenColorIO's CPU and GPU, llvmpipe's GLSL: verify holds each to its bound.
-    done = subprocess.run([command, "verify", text, scratch / "one.cube", "--json", *([] if ALL else ["--quick"])],
+    done = subprocess.run([command, "verify", text, folder / "one.cube", "--json", *([] if ALL else ["--quick"])],
                           capture_output=True, text=True, check=False)
     report.check("verify: all within their bounds", done.returncode == 0, done.stdout[-600:] + done.stderr)
     forms = [row["backend"] for row in json.loads(done.stdout)["rows"]] if done.stdout else []
     report.check("verify: OpenColorIO and GLSL are rows", any("ocio cpu" in f for f in forms) and "glsl" in forms, str(forms))
 
 
-def check_messages(report, command, scratch):
+def test_messages(report, command, folder):
     def message(*arguments):
         begin = time.monotonic()
-        done = subprocess.run([command, *arguments], capture_output=True, text=True, input="", check=False, cwd=scratch, timeout=20)
+        done = subprocess.run([command, *arguments], capture_output=True, text=True, input="", check=False, cwd=folder, timeout=20)
         return done.returncode, done.stderr.strip().splitlines(), time.monotonic() - begin
 
     code, lines, _ = message("eval", "film.cube")
@@ -263,25 +262,24 @@ def check_messages(report, command, scratch):
     code, lines, _ = message("eval", "a.clf")
     report.check("our own LUTs state their input and output", code == 0 and not lines, str(lines))
 
-    film_bytes, dds = (scratch / "film.cube").read_bytes(), (scratch / "rgba16f.dds").read_bytes()
-    (scratch / "cut.cube").write_bytes(film_bytes[:3000])
-    (scratch / "nan.cube").write_bytes(film_bytes.replace(b"0.0000000 0.0000000 0.0000000", b"nan 0 0", 1))
-    (scratch / "huge.cube").write_text("LUT_3D_SIZE 1000\n0 0 0\n")
-    (scratch / "huge.spi3d").write_text("SPILUT 1.0\n3 3\n1000 1000 1000\n0 0 0 0 0 0\n")
-    (scratch / "cut.dds").write_bytes(dds[:-1])
-    (scratch / "flat.dds").write_bytes(dds[:24] + struct.pack("<I", 1) + dds[28:])
-    (scratch / "huge.dds").write_bytes(dds[:12] + struct.pack("<2I", 10**9, 10**9) + dds[20:])
-    (scratch / "nan.dds").write_bytes(dds[:-8] + struct.pack("<4H", 0x7E00, 0, 0, 0))
-    (scratch / "bc7.dds").write_bytes(dds[:128] + struct.pack("<I", 98) + dds[132:])
-    (scratch / "dir.cube").mkdir()
-    os.mkfifo(scratch / "pipe.cube")
+    film_bytes, dds = (folder / "film.cube").read_bytes(), (folder / "rgba16f.dds").read_bytes()
+    (folder / "nan.cube").write_bytes(film_bytes.replace(b"0.0000000 0.0000000 0.0000000", b"nan 0 0", 1))
+    (folder / "huge.cube").write_text("LUT_3D_SIZE 1000\n0 0 0\n")
+    (folder / "huge.spi3d").write_text("SPILUT 1.0\n3 3\n1000 1000 1000\n0 0 0 0 0 0\n")
+    (folder / "cut.dds").write_bytes(dds[:-1])
+    (folder / "flat.dds").write_bytes(dds[:24] + struct.pack("<I", 1) + dds[28:])
+    (folder / "huge.dds").write_bytes(dds[:12] + struct.pack("<2I", 10**9, 10**9) + dds[20:])
+    (folder / "nan.dds").write_bytes(dds[:-8] + struct.pack("<4H", 0x7E00, 0, 0, 0))
+    (folder / "bc7.dds").write_bytes(dds[:128] + struct.pack("<I", 98) + dds[132:])
+    (folder / "dir.cube").mkdir()
+    os.mkfifo(folder / "pipe.cube")
     names = ["cut.cube", "nan.cube", "huge.cube", "huge.spi3d", "cut.dds", "flat.dds", "huge.dds", "nan.dds", "bc7.dds",
              "dir.cube", "pipe.cube", "none.cube"]
     for name in names:
         code, lines, seconds = message("eval", name)
         report.check(f"{name}: one line", code == 3 and len(lines) == 1 and name in lines[0] and seconds < 5, f"{code} {lines}")
     for name in [*names, "self.tone", "../nowhere/x.cube"]:
-        (scratch / "self.tone").write_text(f'tonewright = 1\nid = "a"\n[[stage]]\nlut = "{name}"\ninput = "none"\n')
+        (folder / "self.tone").write_text(f'tonewright = 1\nid = "a"\n[[stage]]\nlut = "{name}"\ninput = "none"\n')
         code, lines, seconds = message("eval", "self.tone")
         report.check(f"lut = {name}: its line and a caret", code == 3 and len(lines) == 3 and "self.tone:4:7" in lines[0] and
                      lines[2].strip() == "^" and seconds < 5, f"{code} {lines}")
@@ -292,66 +290,39 @@ def check_messages(report, command, scratch):
     report.check("--input-encoding needs a LUT", code == 2 and len(lines) == 1 and "LUT" in lines[0], str(lines))
 
     begin = time.monotonic()
-    evaluate(command, UNIT[:1], f"{scratch / 'film.cube'}:input=none")
+    evaluate(command, UNIT[:1], f"{folder / 'film.cube'}:input=none")
     report.check("eval of 33^3 takes less than a second", time.monotonic() - begin < 1)
     if ALL:
-        write_cube(scratch / "big.cube", 129)
-        shown = evaluate(command, UNIT, f"{scratch / 'big.cube'}:input=none", "--display", "native")
-        report.compare("129^3", shown, through_ocio(scratch / "big.cube", UNIT), OCIO_FLOAT)
+        write_cube(folder / "big.cube", 129)
+        shown = evaluate(command, UNIT, f"{folder / 'big.cube'}:input=none", "--display", "native")
+        report.compare("129^3", shown, through_ocio(folder / "big.cube", UNIT), OCIO_FLOAT)
 
 
-def check_python(report, python, command, scratch):
-    sys.path.insert(0, python)
-    import tonewright as tw  # noqa: PLC0415
-
-    text = f"{scratch / 'film.cube'}:input=acescct:output=srgb"
+def test_python(report, tw, command, folder):
+    text = f"{folder / 'film.cube'}:input=acescct:output=srgb"
     pixels = COLORS[None].astype(np.float32)
     report.compare("Python: tonemap", np.asarray(tw.tonemap(pixels, text))[0], evaluate(command, COLORS, text), 2e-6)
-    report.compare("Python: a LUT of OpenColorIO's", tw.evaluate(str(scratch / "a.clf"), COLORS),
-                   evaluate(command, COLORS, scratch / "a.clf"), 1e-9)
+    report.compare("Python: a LUT of OpenColorIO's", tw.evaluate(str(folder / "a.clf"), COLORS),
+                   evaluate(command, COLORS, folder / "a.clf"), 1e-9)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        tw.evaluate(str(scratch / "film.cube"), COLORS)
+        tw.evaluate(str(folder / "film.cube"), COLORS)
     report.check("Python: an unknown encoding is a UserWarning", len(caught) == 1 and "encoding" in str(caught[0].message),
                  str([str(w.message) for w in caught]))
     for name, wanted in (("none.cube", FileNotFoundError), ("none.tone", FileNotFoundError), ("cut.cube", OSError)):
         for function in (lambda op: tw.tonemap(pixels, op), lambda op: tw.evaluate(op, COLORS),
-                         lambda op: tw.bake(op, scratch / "x.cube")):
+                         lambda op: tw.bake(op, folder / "x.cube")):
             try:
-                function(str(scratch / name))
+                function(str(folder / name))
                 report.check(f"Python: {name} raises", False)
             except wanted as e:
                 report.check(f"Python: {name} raises {wanted.__name__}", name in str(e), str(e))
 
 
-def check_plugin(report, plugin, command, scratch):
-    env = {**os.environ, "OIIO_LIBRARY_PATH": str(Path(plugin).resolve())}
+def test_plugin(report, plugin, command, folder):
+    env = {**os.environ, "OIIO_LIBRARY_PATH": str(plugin)}
     name = "scene.exr.tonewright?op=film.cube&set.input=acescct&set.output=srgb"
-    done = subprocess.run(["oiiotool", name, "-o", "plugin.exr"], cwd=scratch, env=env, capture_output=True, text=True, check=False)
+    done = subprocess.run(["oiiotool", name, "-o", "plugin.exr"], cwd=folder, env=env, capture_output=True, text=True, check=False)
     if report.check("plugin: op=film.cube", done.returncode == 0, done.stdout + done.stderr):
-        wanted = evaluate(command, COLORS, f"{scratch / 'film.cube'}:input=acescct:output=srgb")
-        report.compare("plugin: colors", read_rgb(scratch / "plugin.exr", scratch)[0], wanted, 2e-6)
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=Path)
-    parser.add_argument("python", nargs="?")
-    parser.add_argument("plugin", nargs="?")
-    arguments = parser.parse_args()
-    command = arguments.command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory() as folder:
-        scratch = Path(folder)
-        check_formats(report, command, scratch)
-        check_forms(report, command, scratch)
-        check_messages(report, command, scratch)
-        if arguments.python:
-            check_python(report, arguments.python, command, scratch)
-        if arguments.plugin:
-            check_plugin(report, arguments.plugin, command, scratch)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        wanted = evaluate(command, COLORS, f"{folder / 'film.cube'}:input=acescct:output=srgb")
+        report.compare("plugin: colors", read_rgb(folder / "plugin.exr", folder)[0], wanted, 2e-6)

@@ -1,30 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tonewright meter` and the exposures of `apply`: figures against NumPy in double, shots against the closed form.
+"""`tonewright meter` and the exposures of `apply`: figures against NumPy in double, shots against the closed form."""
 
-    python3 tests/cli/test_meter.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import json
 import os
 import re
 import subprocess
-import sys
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, read_exr, read_planes, share_of, share_of_refusals, shared_picture, write_exr  # noqa: E402
+import pytest
+from pictures import read_exr, read_planes, share_of, share_of_refusals, shared_picture, skip, write_exr
 
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 FPS, UP, DOWN = 12, 3.0, 0.8
 # A shot: dark, then the sun, then dark again.
 LIGHT = {n: 0.05 if n < 1004 or n > 1008 else 6.0 for n in range(1001, 1013)}
+EVERY = ["--frames", "1001-1012"]
+METERED = ["--auto-exposure", "log-average", "--set", "divisor=1000"]
+ADAPT = [*METERED, "--adapt", "--adapt-up", UP, "--adapt-down", DOWN, "--fps", FPS]
 
 
 class Tool:
@@ -48,6 +41,30 @@ class Tool:
                           and words in line, f"{done.returncode} {line}")
 
 
+def write_shot(folder):
+    for number, light in LIGHT.items():
+        write_exr(folder / f"shot.{number}.exr", {c: np.full((3, 5), light, np.float32) for c in "RGB"})
+
+
+@pytest.fixture(scope="module")
+def folder(folder):
+    """With a picture whose pixels do not all count, and a shot."""
+    rgb = np.full((4, 6, 3), 0.5)
+    rgb[0, 0, 1], rgb[0, 1, 2], rgb[0, 2, 0] = np.nan, np.inf, -np.inf
+    rgb[1] = 8
+    alpha = np.ones((4, 6))
+    alpha[3], rgb[3] = 0.5, 1  # 2 when divided
+    alpha[2, 5] = 0
+    write_exr(folder / "a.exr", {**{c: rgb[..., i] for i, c in enumerate("RGB")}, "A": alpha})
+    write_shot(folder)
+    return folder.resolve()
+
+
+@pytest.fixture
+def tool(command, report, folder):
+    return Tool(command, report, folder)
+
+
 def relative(actual, expected):
     return abs(actual - expected) / abs(expected)
 
@@ -57,7 +74,7 @@ def luminance(planes):
     return (np.clip(rgb, 0, np.finfo(np.float32).max) @ WEIGHTS).ravel()
 
 
-def figures(tool, report, path, name):
+def check_figures(tool, report, path, name):
     """A picture's figures by their definitions, in double."""
     light = luminance(read_planes(path, tool.folder))
     lit = light[light > 0]
@@ -106,15 +123,19 @@ def figures(tool, report, path, name):
     report.check(f"{name}: in ASCII where the terminal has no more", plain.stdout.isascii() and "#" in plain.stdout)
 
 
-def pixels(tool, report):
+def test_figures(tool, report):
+    tool.run("chart", "-o", "chart.exr", "--width", "640", "--height", "360")
+    check_figures(tool, report, tool.folder / "chart.exr", "chart")
+
+
+@pytest.mark.share(2)
+def test_figures_of_a_photograph(tool, report):
+    memorial = shared_picture("memorial.hdr") or skip("memorial.hdr (TONEWRIGHT_SHARED)")
+    check_figures(tool, report, memorial, "memorial.hdr")
+
+
+def test_pixels(tool, report):
     """Which pixels count."""
-    rgb = np.full((4, 6, 3), 0.5)
-    rgb[0, 0, 1], rgb[0, 1, 2], rgb[0, 2, 0] = np.nan, np.inf, -np.inf
-    rgb[1] = 8
-    alpha = np.ones((4, 6))
-    alpha[3], rgb[3] = 0.5, 1  # 2 when divided
-    alpha[2, 5] = 0
-    write_exr(tool.folder / "a.exr", {**{c: rgb[..., i] for i, c in enumerate("RGB")}, "A": alpha})
     found = tool.meter("a.exr")[0]
     report.check("NaN, infinities and pixels without cover are counted apart",
                  found["pixels"] == {"counted": 20, "black": 0, "nan": 1, "infinite": 2, "uncovered": 1},
@@ -127,7 +148,7 @@ def pixels(tool, report):
     report.bound("without division", relative(found["luminance"]["mean"], 1), 1e-15)
 
 
-def ranges(tool, report):
+def test_ranges(tool, report):
     """A render in cd/m2, far above the usual range of the histogram, and a sun."""
     gray = np.linspace(2000, 5000, 4096, dtype=np.float32).reshape(64, 64)
     write_exr(tool.folder / "nits.exr", {c: gray for c in "RGB"})
@@ -170,7 +191,7 @@ def ranges(tool, report):
         report.bound(f"a sun at -17 stops: {channel}", np.abs(shown[channel] - x / (x + 1)).max(), 1e-6)  # the engine's bound
 
 
-def single(tool, report):
+def test_single(tool, report):
     """A picture is that of the exposure that meter names."""
     for arguments in share_of((["log-average"], ["mean", "--compensation", "-0.5"], ["histogram", "--percentiles", "10,90"],
                                ["max", "--meter-region", "0,1,6,1"]), 2):
@@ -218,47 +239,42 @@ def closed_form(frames, start=None):
     return stops
 
 
-def shots(tool, report):
-    for number, light in LIGHT.items():
-        write_exr(tool.folder / f"shot.{number}.exr", {c: np.full((3, 5), light, np.float32) for c in "RGB"})
-    every = ["--frames", "1001-1012"]
-    metered = ["--auto-exposure", "log-average", "--set", "divisor=1000"]
-    adapt = [*metered, "--adapt", "--adapt-up", UP, "--adapt-down", DOWN, "--fps", FPS]
+def test_shots(tool, report):
     bound = 3e-7  # floats of 24 bits, twice rounded, as stops
 
-    done, _ = render(tool, "each", *every, *metered)
+    done, _ = render(tool, "each", *EVERY, *METERED)
     report.check("frames by themselves", done.returncode == 0, done.stderr)
     error = max(abs(stops_of(tool, "each", n) - np.log2(0.18 / (light + 1e-3))) for n, light in LIGHT.items())
     report.bound("each frame has the exposure of its own light", error, bound)
 
-    done, whole = render(tool, "whole", *every, *adapt)
+    done, whole = render(tool, "whole", *EVERY, *ADAPT)
     report.check("frames that adapt", done.returncode == 0 and len(whole) == 12, done.stderr)
     expected = closed_form(sorted(LIGHT))
     error = max(abs(stops_of(tool, "whole", n) - stops) for n, stops in expected.items())
     report.bound("adaptation is the closed form", error, bound)
     report.check("towards more light it is faster", abs(expected[1007] - expected[1003]) > 3)
-    told = tool.meter("shot.####.exr", *every, *adapt[4:])
+    told = tool.meter("shot.####.exr", *EVERY, *ADAPT[4:])
     error = max(abs(p["adapted_exposure"] - expected[p["frame"]]) for p in told)
     report.bound("meter tells the same", error, 1e-6)  # 0.05 is a float in the file
 
-    _, mixed = render(tool, "mixed", "--frames", "1009,1003,1012,1001,1005,1002,1004,1007,1006,1011,1008,1010", *adapt,
+    _, mixed = render(tool, "mixed", "--frames", "1009,1003,1012,1001,1005,1002,1004,1007,1006,1011,1008,1010", *ADAPT,
                       "--threads", 3)
     report.check("out of order: the same bytes", mixed == whole)
     parts = {}
     for i, part in enumerate(("1001-1004", "1005-1009", "1012-1010")):
         parts.update(render(tool, f"part{i}", "--frames", part, "--meter-frames", "1001-1012", "--meter-cache",
-                            "cache.json", *adapt)[1])
+                            "cache.json", *ADAPT)[1])
     report.check("in parts, as on several machines: the same bytes", parts == whole)
 
-    start = render(tool, "start", *every, *adapt, "--adapt-start", "2", "--compensation", "-1", "--exposure", "0.5")[0]
+    start = render(tool, "start", *EVERY, *ADAPT, "--adapt-start", "2", "--compensation", "-1", "--exposure", "0.5")[0]
     error = max(abs(stops_of(tool, "start", n) - (stops - 0.5)) for n, stops in closed_form(sorted(LIGHT), 2).items())
     report.bound(f"from a start, with corrections on top ({start.returncode})", error, bound)
     error = 0
-    render(tool, "steps", "--frames", "1001-1012x3", *adapt)
+    render(tool, "steps", "--frames", "1001-1012x3", *ADAPT)
     for n, stops in closed_form(range(1001, 1013, 3)).items():
         error = max(error, abs(stops_of(tool, "steps", n) - stops))
     report.bound("every third frame: three times the time", error, bound)
-    render(tool, "other", *every, *metered, "--adapt", "--adapt-form", "0.98", "--fps", "30")
+    render(tool, "other", *EVERY, *METERED, "--adapt", "--adapt-form", "0.98", "--fps", "30")
     adapted, error = (0.05 + 1e-3) / 0.18, 0
     for n, light in LIGHT.items():
         if n > 1001:
@@ -267,9 +283,9 @@ def shots(tool, report):
     report.bound("0.98^(30 dt) at 30 frames a second", error, bound)
 
     # Operators that take a statistic: `linear` divides by the largest luminance.
-    render(tool, "picture", *every)
-    render(tool, "sequence", *every, "--statistics", "sequence")
-    render(tool, "defaults", *every, "--statistics", "defaults")
+    render(tool, "picture", *EVERY)
+    render(tool, "sequence", *EVERY, "--statistics", "sequence")
+    render(tool, "defaults", *EVERY, "--statistics", "defaults")
     for out, divisor in (("picture", LIGHT), ("sequence", dict.fromkeys(LIGHT, 6.0)), ("defaults", dict.fromkeys(LIGHT, 4.0))):
         error = 0
         for n, light in LIGHT.items():
@@ -279,26 +295,28 @@ def shots(tool, report):
     _, part = render(tool, "sequence2", "--frames", "1002", "--statistics", "sequence", "--meter-frames", "1001-1012")
     report.check("statistics of the whole shot for a part of it",
                  part[1002] == pixel_bytes(tool.folder / "sequence" / "f.1002.exr"))
-    cache(tool, report, adapt)
 
 
-def cache(tool, report, adapt):
+def test_cache(command, report, scratch):
+    tool = Tool(command, report, scratch.resolve())
+    write_shot(tool.folder)
     path = tool.folder / "cache.json"
+    tool.meter("shot.####.exr", *EVERY, "--meter-cache", path)
     before = path.read_bytes()
-    kept = tool.meter("shot.####.exr", "--frames", "1001-1012", "--meter-cache", path)
+    kept = tool.meter("shot.####.exr", *EVERY, "--meter-cache", path)
     report.check("a cache that knows all stays as it is", path.read_bytes() == before)
     # A figure that no picture has: who reads it has it from the cache.
     known = json.loads(before)
     entry = known["pictures"][str(tool.folder / "shot.1003.exr")]
     entry["metering"]["luminance"]["log_average"] = 123.0
     path.write_text(json.dumps(known))
-    told = tool.meter("shot.####.exr", "--frames", "1001-1012", "--meter-cache", path)
+    told = tool.meter("shot.####.exr", *EVERY, "--meter-cache", path)
     report.check("what the cache has is not metered", told[2]["luminance"]["log_average"] == 123)
-    told = tool.meter("shot.####.exr", "--frames", "1001-1012", "--meter-cache", path, "--delta", "1e-4")
+    told = tool.meter("shot.####.exr", *EVERY, "--meter-cache", path, "--delta", "1e-4")
     report.bound("but with other options it is", relative(told[2]["luminance"]["log_average"], 0.05 + 1e-4), 1e-7)
     path.write_text(json.dumps(known))
     os.utime(tool.folder / "shot.1003.exr", (1, 1))
-    told = tool.meter("shot.####.exr", "--frames", "1001-1012", "--meter-cache", path)
+    told = tool.meter("shot.####.exr", *EVERY, "--meter-cache", path)
     report.check("and so is a file of another time", told == kept)
     report.check("and the cache has it then", tool.meter("shot.1003.exr", "--meter-cache", path)[0]["luminance"]
                  == kept[2]["luminance"] and b"123.0" not in path.read_bytes())
@@ -313,22 +331,22 @@ def cache(tool, report, adapt):
         tool.refused(f"a cache that is {what}", 3, "is not a meter cache", "meter", "shot.1003.exr", "--meter-cache", path)
         report.check("stays", path.read_bytes() == (text if isinstance(text, bytes) else text.encode()))
     tool.refused("a cache in no folder", 3, "gone/cache.json", "meter", "shot.1003.exr", "--meter-cache", "gone/cache.json")
-    tool.refused("a cache that is a folder", 3, "is a folder", "meter", "shot.1003.exr", "--meter-cache", "each")
+    tool.refused("a cache that is a folder", 3, "is a folder", "meter", "shot.1003.exr", "--meter-cache", ".")
 
     (tool.folder / "shot.1006.exr").unlink()
     (tool.folder / "lost").mkdir()
     tool.refused("a shot that adapts needs all its frames", 3, "shot.1006.exr", "apply", "shot.####.exr", "lost/f.####.exr",
-                 "--operator", "hable", "--frames", "1010", "--meter-frames", "1001-1012", *adapt[:2], *adapt[4:])
+                 "--operator", "hable", "--frames", "1010", "--meter-frames", "1001-1012", *ADAPT[:2], *ADAPT[4:])
     report.check("and writes none without", not list((tool.folder / "lost").iterdir()))
-    done, files = render(tool, "without", "--frames", "1001-1012", *adapt[:4])
+    done, files = render(tool, "without", *EVERY, *ADAPT[:4])
     report.check("without adaptation the others are made", done.returncode == 1 and len(files) == 11, done.stderr)
     for policy, count in (("skip", 11), ("hold", 12)):
-        done, files = render(tool, policy, "--frames", "1001-1012", "--missing", policy, *adapt)
+        done, files = render(tool, policy, *EVERY, "--missing", policy, *ADAPT)
         report.check(f"--adapt --missing {policy}", done.returncode == 0 and len(files) == count, done.stderr)
     report.check("a held frame has the exposure of the one before", files.get(1006) == files[1005])
 
 
-def refusals(tool, report):
+def test_refusals(tool, report):
     def apply(*arguments):
         return "apply", "a.exr", "bad.exr", "--operator", "hable", "--auto-exposure", "log-average", *arguments
 
@@ -377,28 +395,3 @@ def refusals(tool, report):
     done = tool.run("meter", "a.exr", "none.exr", "shot.1001.exr")
     report.check("one that is missing among others", done.returncode == 3 and "shot.1001.exr" in done.stdout
                  and done.stderr.count("\n") == 1, done.stdout + done.stderr)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        folder = Path(name).resolve()
-        tool = Tool(command, report, folder)
-        tool.run("chart", "-o", "chart.exr", "--width", "640", "--height", "360")
-        figures(tool, report, folder / "chart.exr", "chart")
-        memorial = shared_picture("memorial.hdr")
-        if memorial and share_of([True, False], 2)[0]:
-            figures(tool, report, memorial, "memorial.hdr")
-        pixels(tool, report)
-        ranges(tool, report)
-        single(tool, report)
-        shots(tool, report)
-        refusals(tool, report)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -30,6 +30,7 @@ def pytest_addoption(parser):
     group.addoption("--other", type=Path, metavar="COMMAND", help="the command of another build, which must write the same files")
     group.addoption("--site", type=Path, metavar="FOLDER", help="the documentation site; without it, its test builds one")
     group.addoption("--screenshots", type=Path, metavar="FOLDER", help="write pictures of pages here")
+    group.addoption("--record", action="store_true", help="write the numbers that a test compares anew, where it has some")
 
 
 def pytest_configure(config):

@@ -80,10 +80,9 @@ class Report:
 
 
 def skip(reason):
-    """Ends the whole script, or the test of pytest, as skipped."""
-    if "PYTEST_CURRENT_TEST" in os.environ:
-        import pytest  # scripts run without it
-        pytest.skip(reason)
+    """Ends the script, or the test or the file of pytest, as skipped."""
+    if "pytest" in sys.modules:
+        sys.modules["pytest"].skip(reason, allow_module_level=True)
     print(f"skipped: {reason}")
     sys.exit(SKIPPED)
 

@@ -1,34 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every tag of every format that is read: used, named in one line, or refused with the reason.
 
-    python3 tests/tags/test_tags.py build/release/bin/tonewright [--table FILE] [--keep FOLDER] [NAME...]
+    python3 -m pytest tests/tags/test_tags.py --tonewright build/release/bin/tonewright [--table FILE] [-k NAME]
 
 The files and their light come from make_files.py: closed formulas of the standards, no picture of Tonewright. `apply` writes
-x/(x+1) of linear Rec.709, which loses nothing but negatives, and `info --json` says what the file means. --table writes
-the table of docs/conventions.md from all rows: format, and its tags by what happened. A commit tests an eighth of the rows, `./run test
---all` every one. The last line is `N passed, M failed`.
+x/(x+1) of linear Rec.709, which loses nothing but negatives, and `info --json` says what the file means. With TONEWRIGHT_TEST_ALL=1,
+--table writes the table of docs/conventions.md: format, and its tags by what happened. A commit tests an eighth of the rows, `./run
+test --all` every one. -k selects by format or name of a file; pytest keeps the files of the last runs in its --basetemp.
 """
 
-import argparse
 import concurrent.futures
 import json
 import os
 import re
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
+import pytest
+from make_files import IMPOSSIBLE, NAMED, NO_EFFECT, ROWS, USED, Missing
+from pictures import share_of, skip
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from make_files import IMPOSSIBLE, NAMED, NO_EFFECT, ROWS, USED, Missing  # noqa: E402
-from pictures import Report, share_of, skip  # noqa: E402
-
-try:
-    import OpenImageIO as oiio
-except ImportError:
-    skip("OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 REFUSED = 3
 # Below this share of the largest channel, 1 % is less than a code of 16 bits.
@@ -172,36 +164,25 @@ def markdown(results):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program")
-    parser.add_argument("--table", help="write the table as Markdown")
-    parser.add_argument("--keep", help="write the files into this folder and keep them")
-    parser.add_argument("names", nargs="*", help="names of files, or formats")
-    options = parser.parse_args()
-    rows = [row for row in ROWS if not options.names or row.name in options.names or row.format in options.names]
-    if not options.names and not options.table:
-        rows = share_of(rows, 8)
-    report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(options.keep or scratch)
-        folder.mkdir(parents=True, exist_ok=True)
-        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            results = list(pool.map(lambda row: trial(options.program, row, folder), rows))
-    skipped = 0
-    for row, seen, fault, why in results:
-        if seen == "skipped":
-            skipped += 1
-            print(f"skip {row.format:10s} {row.tag}: {why}")
-            continue
-        report.check(f"{row.format:10s} {row.tag}: {seen or 'fails'}  ({row.name})", not fault, fault)
-    if options.table:
-        Path(options.table).write_text(markdown(results))
-    if skipped:
-        print(f"{skipped} skipped")
-    print(f"{report.passed} passed, {report.failed} failed")
-    return 1 if report.failed else 0
+SHARE = {row.name for row in share_of(ROWS, 8)}
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+@pytest.fixture(scope="module")
+def trials(request, command, tmp_path_factory):
+    """{name of a file: its trial}, for all rows that run: as many at a time as there are processors."""
+    folder = tmp_path_factory.mktemp("tags")
+    rows = [item.callspec.params["row"] for item in request.session.items if item.path == request.path]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        trials = {row.name: pool.submit(trial, command, row, folder) for row in rows}
+        yield trials
+    if table := request.config.getoption("--table"):
+        table.write_text(markdown([done.result() for done in trials.values()]))
+
+
+@pytest.mark.parametrize("row", [pytest.param(row, id=f"{row.format} {row.name}", marks=() if row.name in SHARE else pytest.mark.full)
+                                 for row in ROWS])
+def test_row(report, trials, row):
+    _row, seen, fault, why = trials[row.name].result()
+    if seen == "skipped":
+        skip(f"{row.format} {row.tag}: {why}")
+    report.check(f"{row.format:10s} {row.tag}: {seen or 'fails'}  ({row.name})", not fault, fault)

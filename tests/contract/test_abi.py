@@ -1,27 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """The libraries export what the last release exported: abidiff compares them with the baseline in tests/contract/abi/.
 
-    python3 tests/contract/test_abi.py FOLDER_OF_LIBRARIES [--record]
+    python3 -m pytest tests/contract/test_abi.py --libraries build/release/lib [--record]
 
 Only names of the public headers count. Files without debug information have symbols alone, with their mangled types: a
 function that is gone or takes other types is found, another layout of a struct is not. New symbols are welcome. --record
 writes the baseline of a release.
 """
 
-import argparse
 import platform
 import re
-import shutil
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
-PROJECT = Path(__file__).resolve().parents[2]
+import pytest
+from pictures import PROJECT, need_program, skip
+
 BASELINE = PROJECT / "tests" / "contract" / "abi"
 HEADERS = PROJECT / "src" / "include" / "tonewright"
 LIBRARIES = ("core", "ocio", "image")
-SKIPPED = 77
 # Bits of abidiff's exit status: an error, a wrong command line; a change, an incompatible change.
 ERRORS, CHANGES = 1 | 2, 4 | 8
 # Fewer means that the filter below lost the names.
@@ -43,7 +41,7 @@ def public_symbols(names):
 
 
 def record(library, baseline):
-    """The number of symbols that the baseline has."""
+    """Writes the baseline of a library."""
     with tempfile.NamedTemporaryFile(suffix=".abi") as file:
         subprocess.run(["abidw", "--no-corpus-path", "--no-comp-dir-path", "--no-show-locs", "--out-file", file.name, library],
                        check=True)
@@ -55,40 +53,20 @@ def record(library, baseline):
     text = re.sub(r"  <elf-needed>.*</elf-needed>\n", "", "".join(kept), flags=re.DOTALL)
     baseline.parent.mkdir(exist_ok=True)
     baseline.write_text(text, encoding="utf-8")
-    return len(public)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--record", action="store_true")
-    arguments = parser.parse_args()
+@pytest.mark.parametrize("name", LIBRARIES)
+def test_symbols(request, report, name):
     for program in ("abidiff", "abidw", "c++filt"):
-        if not shutil.which(program):
-            print(f"skipped: {program} is not installed (Debian: abigail-tools)")
-            return SKIPPED
+        need_program(program, "abigail-tools")
     if platform.machine() != "x86_64":
-        print(f"skipped: the baseline is of x86_64, not of {platform.machine()}")
-        return SKIPPED
-    failed = 0
-    for name in LIBRARIES:
-        library = arguments.folder / f"libtonewright_{name}.so"
-        baseline = BASELINE / f"libtonewright_{name}.abi"
-        if arguments.record:
-            count = record(library, baseline)
-            print(f"{baseline.name}: {count} symbols")
-            failed += count < LEAST_SYMBOLS[name]
-            continue
-        count = baseline.read_text(encoding="utf-8").count("<elf-symbol ")
-        done = subprocess.run(["abidiff", "--no-added-syms", baseline, library], stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, text=True, check=False)
-        is_kept = not done.returncode & (ERRORS | CHANGES) and count >= LEAST_SYMBOLS[name]
-        failed += not is_kept
-        print(f"{'ok  ' if is_kept else 'FAIL'} {name}: {count} symbols of the baseline")
-        if not is_kept:
-            print(done.stdout)
-    return 1 if failed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        skip(f"the baseline is of x86_64, not of {platform.machine()}")
+    library = request.config.getoption("--libraries") / f"libtonewright_{name}.so"
+    baseline = BASELINE / f"libtonewright_{name}.abi"
+    if request.config.getoption("--record"):
+        record(library, baseline)
+    count = baseline.read_text(encoding="utf-8").count("<elf-symbol ")
+    done = subprocess.run(["abidiff", "--no-added-syms", baseline, library], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, check=False)
+    report.check(f"{name}: {count} symbols of the baseline",
+                 not done.returncode & (ERRORS | CHANGES) and count >= LEAST_SYMBOLS[name], done.stdout)

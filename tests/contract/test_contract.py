@@ -1,8 +1,7 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The promises of a release: names in the configs stay, and no operator's numbers change without a line in CHANGELOG.md.
 
-    /usr/bin/python3 tests/contract/test_contract.py build/release/bin/tonewright [--record]
+    python3 -m pytest tests/contract/test_contract.py --tonewright build/release/bin/tonewright [--record]
 
 names.txt has every name of the committed config that a project file or a script may hold; parity.profiles compares the names of its
 other versions. numbers.csv has the colors that every
@@ -10,21 +9,17 @@ operator shows, with its presets and looks. --record writes both anew, after the
 """
 
 import json
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import PROJECT, Report, run, skip  # noqa: E402
+import pytest
+from pictures import PROJECT, run
 
-try:
-    import PyOpenColorIO as ocio
-except ImportError:
-    skip("PyOpenColorIO is missing (Debian: python3-opencolorio)")
+ocio = pytest.importorskip("PyOpenColorIO", reason="PyOpenColorIO is missing (Debian: python3-opencolorio)")
 
 HERE = Path(__file__).resolve().parent
 NAMES = HERE / "names.txt"
 NUMBERS = HERE / "numbers.csv"
-CHANGELOG = "expected a line in CHANGELOG.md, then `tests/contract/test_contract.py COMMAND --record`"
+CHANGELOG = "expected a line in CHANGELOG.md, then `python3 -m pytest -c tests/pytest.ini tests/contract/test_contract.py --record`"
 # Black, mid gray, white, above white, and saturated colors dark and bright, one with a negative channel.
 COLORS = ((0, 0, 0), (0.18, 0.18, 0.18), (1, 1, 1), (20, 20, 20), (0.8, 0.1, 0.05), (0.02, 0.3, 0.04), (0.01, 0.02, 6), (40, 2, 30),
           (-0.1, 0.4, 0.9))
@@ -65,16 +60,19 @@ def all_numbers(command):
             for name in operators(command)}
 
 
-def main(command, *options):
-    names, numbers = all_names(), all_numbers(command)
-    if options == ("--record",):
+def test_names(request, report):
+    names = all_names()
+    if request.config.getoption("--record"):
         NAMES.write_text("".join(f"{name}\n" for name in sorted(names)))
-        NUMBERS.write_text("".join(f"{name},{','.join(f'{x:.9f}' for x in values)}\n" for name, values in sorted(numbers.items())))
-        return 0
-    report = Report()
     promised = set(NAMES.read_text().splitlines())
     report.check(f"{len(promised)} names are there", promised <= names, f"gone: {sorted(promised - names)}; files that name it break")
     report.check("no name is new", names <= promised, f"new: {sorted(names - promised)}; {CHANGELOG}")
+
+
+def test_numbers(request, report, command):
+    numbers = all_numbers(command)
+    if request.config.getoption("--record"):
+        NUMBERS.write_text("".join(f"{name},{','.join(f'{x:.9f}' for x in values)}\n" for name, values in sorted(numbers.items())))
     recorded = dict(line.split(",", 1) for line in NUMBERS.read_text().splitlines())
     report.check(f"{len(recorded)} operators, presets and looks are the same ones", recorded.keys() == numbers.keys(),
                  f"{sorted(recorded.keys() ^ numbers.keys())}; {CHANGELOG}")
@@ -84,8 +82,3 @@ def main(command, *options):
         if not difference <= NUMBERS_BOUND:
             changed[name] = difference
     report.check("their numbers are the same", not changed, f"{changed}; {CHANGELOG}")
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The option of test_instructions.py."""
+
+from pathlib import Path
+
+from pictures import PROJECT
+
+
+def pytest_addoption(parser):
+    parser.getgroup("tonewright").addoption("--program", type=Path, metavar="FILE", default=PROJECT / "build/release/bin/tonewright_instructions",
+                                            help="the program that runs operators (default: build/release/bin/tonewright_instructions)")

@@ -1,42 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests the package operators: its doctests, every published row of tests/data/operators.csv, and inner parts.
 
-    [TONEWRIGHT_SHARED=<folder>] python3 test_operators.py
+    [TONEWRIGHT_SHARED=<folder>] python3 -m pytest tests/python_check/test_operators.py
 
-With the folder, reference/check_values.json in it is compared too. The last line is `N passed, M failed`.
+With the folder, reference/check_values.json in it is compared too.
 """
 
 import colorsys
 import doctest
 import importlib
 import json
-import os
 import pkgutil
 import re
-import sys
 import warnings
-from pathlib import Path
 from unittest import mock
-
-import numpy as np
 
 import check_operators
 import check_values
 import make_operator_rows
+import numpy as np
 import operators
 from operators import aces, aces_13, aces_20, hable, reinhard, spaces
+from pictures import PROJECT
 
 FLOOR = 1e-3  # errors are relative to max(|expected|, FLOOR), as in operators.csv
-counts = {True: 0, False: 0}
-
-
-def report(what, error, tolerance, detail=""):
-    """Print and count one check; NaN fails."""
-    ok = bool(error <= tolerance)
-    counts[ok] += 1
-    print(f"{'ok  ' if ok else 'FAIL'} {what:80s} {error:8.1e} {error / tolerance:8.2g} x tolerance")
-    if not ok and detail:
-        print(f"  {detail}")
 
 
 def relative_error(actual, expected):
@@ -44,14 +31,14 @@ def relative_error(actual, expected):
     return np.max(np.abs(actual - expected) / np.maximum(np.abs(expected), FLOOR))
 
 
-def check_doctests():
+def test_doctests(report):
     families = [importlib.import_module(f"operators.{m.name}") for m in pkgutil.iter_modules(operators.__path__)]
     for module in (operators, *families, check_values, make_operator_rows):
         result = doctest.testmod(module)
-        report(f"{module.__name__}: {result.attempted} examples, failures", result.failed, 0.5)
+        report.bound(f"{module.__name__}: {result.attempted} examples, failures", result.failed, 0.5)
 
 
-def check_rows():
+def test_rows(report):
     """Each group of rows with one operator, settings, look, output and origin."""
     groups = {}
     for row in make_operator_rows.read_rows():
@@ -65,10 +52,10 @@ def check_rows():
                                 input=space or "lin_rec709", display=output)
         shown = settings if len(settings) < 40 else settings[:36] + "..."
         name = " ".join(filter(None, (operator, shown, look, output, f"({len(rows)})", origin.split(":")[0])))
-        report(name, relative_error(actual, expected), float(tolerance), f"is {actual.tolist()}, expected {expected}")
+        report.bound(name, relative_error(actual, expected), float(tolerance), f"is {actual.tolist()}, expected {expected}")
 
 
-def check_parts():
+def test_parts(report):
     """Statements of the sources about their own constants."""
     to_ap1 = operators.rgb_to_rgb("rec709", "ap1")
 
@@ -76,27 +63,27 @@ def check_parts():
         return s * np.eye(3) + (1 - s) * operators.rgb_to_xyz("ap1")[1]
 
     # Hill prints five decimals; ours from the chromaticities, with RRT_SAT 0.96 and ODT_SAT 0.93.
-    report("Hill's input matrix", np.abs(saturation(0.96) @ to_ap1 - operators.HILL_IN).max(), 6e-6)
-    report("Hill's output matrix", np.abs(np.linalg.solve(to_ap1, saturation(0.93)) - operators.HILL_OUT).max(), 6e-6)
+    report.bound("Hill's input matrix", np.abs(saturation(0.96) @ to_ap1 - operators.HILL_IN).max(), 6e-6)
+    report.bound("Hill's output matrix", np.abs(np.linalg.solve(to_ap1, saturation(0.93)) - operators.HILL_OUT).max(), 6e-6)
     # Wrensch and three.js print the inverse inset instead of inverting.
     printed = [[1.19687900512017, -0.0980208811401368, -0.0990297440797205],
                [-0.0528968517574562, 1.15190312990417, -0.0989611768448433],
                [-0.0529716355144438, -0.0980434501171241, 1.15107367264116]]
-    report("inverse AgX inset as printed", np.abs(np.linalg.inv(operators.AGX_INSET) - printed).max(), 1e-14)
+    report.bound("inverse AgX inset as printed", np.abs(np.linalg.inv(operators.AGX_INSET) - printed).max(), 1e-14)
     # ITU-R BT.2087-0 prints four decimals of Rec.709 -> Rec.2020.
     bt2087 = [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0114], [0.0164, 0.0880, 0.8956]]
-    report("Rec.709 -> Rec.2020 as BT.2087 prints it",
-           np.abs(operators.rgb_to_rgb("rec709", "rec2020") - bt2087).max(), 5.1e-5)
+    report.bound("Rec.709 -> Rec.2020 as BT.2087 prints it",
+                 np.abs(operators.rgb_to_rgb("rec709", "rec2020") - bt2087).max(), 5.1e-5)
 
 
-def check_extremes():
+def test_extremes(report):
     """Every run of check_operators.py without a warning of NumPy, an infinity or a NaN; the refused are refused."""
     rgb = check_operators.samples()
     views = [{k: v for k, v in view.items() if k != "preset"} for view in check_operators.runs()]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         bad = [view for view in views if not np.isfinite(operators.view(rgb=rgb, **view)).all()]
-    report(f"views not finite ({len(views)})", len(bad), 0.5, bad[:1])
+    report.bound(f"views not finite ({len(views)})", len(bad), 0.5, bad[:1])
     accepted = []
     for operator, settings in check_operators.REFUSED:
         try:
@@ -104,7 +91,7 @@ def check_extremes():
             accepted.append((operator, settings))
         except ValueError:
             pass
-    report(f"refused settings accepted ({len(check_operators.REFUSED)})", len(accepted), 0.5, accepted[:1])
+    report.bound(f"refused settings accepted ({len(check_operators.REFUSED)})", len(accepted), 0.5, accepted[:1])
 
 
 def lights(operator, rgb, settings):
@@ -117,7 +104,7 @@ def hue(rgb):
     return np.array([colorsys.rgb_to_hsv(*color)[0] for color in rgb])
 
 
-def check_apply():
+def test_apply(report):
     """Properties of each method to apply a curve, for every operator that has it, and for curves of known contrast."""
     rng = np.random.default_rng(7)
     rgb = 0.18 * 2.0 ** rng.uniform(-6, 6, (200, 3))
@@ -133,33 +120,33 @@ def check_apply():
         turn = np.abs(hue(out[inside]) - hue(rgb[inside]))
         hues[operator] = np.minimum(turn, 1 - turn).max(initial=0)
     worst = max(scaled, key=scaled.get)
-    report(f"apply=luminance, max: ratios of the channels kept ({len(scaled)})", scaled[worst], 1e-12, worst)
+    report.bound(f"apply=luminance, max: ratios of the channels kept ({len(scaled)})", scaled[worst], 1e-12, worst)
     worst = max(hues, key=hues.get)
-    report(f"apply=hue_preserving: HSV hue kept ({len(hues)})", hues[worst], 1e-12, worst)
+    report.bound(f"apply=hue_preserving: HSV hue kept ({len(hues)})", hues[worst], 1e-12, worst)
 
     def curve(x):
         return operators.apply_curve(lambda v: v / (1 + v), rgb, **x)
 
     luminance = {"apply": "luminance"}
     wanted = operators.luminance(rgb) / (1 + operators.luminance(rgb))
-    report("apply=luminance: luminance is the curve's", relative_error(operators.luminance(curve(luminance)), wanted),
-           1e-12)
+    report.bound("apply=luminance: luminance is the curve's", relative_error(operators.luminance(curve(luminance)), wanted),
+                 1e-12)
     largest = rgb.max(-1, keepdims=True)
-    report("apply=max: the largest channel is the curve's",
-           relative_error(curve({"apply": "max"}).max(-1, keepdims=True), largest / (1 + largest)), 1e-12)
+    report.bound("apply=max: the largest channel is the curve's",
+                 relative_error(curve({"apply": "max"}).max(-1, keepdims=True), largest / (1 + largest)), 1e-12)
     channels = np.abs(hue(curve({})) - hue(rgb))
-    report("apply=channels: HSV hue turned by more than 1e-3", 1e-3 / np.minimum(channels, 1 - channels).max(), 1)
+    report.bound("apply=channels: HSV hue turned by more than 1e-3", 1e-3 / np.minimum(channels, 1 - channels).max(), 1)
     for correction in ("nonlinear", "luminance_preserving"):
         how = {**luminance, "color_correction": correction}
-        report(f"{correction}, saturation 1: as ratio", relative_error(curve(how), curve(luminance)), 1e-12)
+        report.bound(f"{correction}, saturation 1: as ratio", relative_error(curve(how), curve(luminance)), 1e-12)
         gray = np.broadcast_to(wanted, rgb.shape)
-        report(f"{correction}, saturation 0: gray", relative_error(curve({**how, "saturation": 0}), gray), 1e-12)
+        report.bound(f"{correction}, saturation 0: gray", relative_error(curve({**how, "saturation": 0}), gray), 1e-12)
     for saturation in (0.4, 1.7):
         for source in ("fixed", "contrast"):
             out = curve({**luminance, "color_correction": "luminance_preserving", "saturation": saturation,
                          "saturation_from": source})
-            report(f"luminance_preserving, saturation {saturation}, {source}: luminance kept",
-                   relative_error(operators.luminance(out), wanted), 1e-12)
+            report.bound(f"luminance_preserving, saturation {saturation}, {source}: luminance kept",
+                         relative_error(operators.luminance(out), wanted), 1e-12)
 
     # A power has the same contrast everywhere, the identity 1, where the formula leaves the saturation alone.
     for exponent in (0.3, 1, 1.8):
@@ -170,21 +157,21 @@ def check_apply():
             by_contrast = operators.apply_curve(lambda x, e=exponent: x**e, rgb, **how, saturation=0.9,
                                                 saturation_from="contrast")
             fixed = operators.apply_curve(lambda x, e=exponent: x**e, rgb, **how, saturation=saturation)
-            report(f"{correction}: saturation from the contrast {exponent}", relative_error(by_contrast, fixed), 1e-12)
+            report.bound(f"{correction}: saturation from the contrast {exponent}", relative_error(by_contrast, fixed), 1e-12)
     x = 2.0 ** rng.uniform(-20, 15, 1000)
     contrasts = {"x/(1+x)": (lambda v: v / (1 + v), 1 / (1 + x)),
                  "1-exp(-x)": (lambda v: -np.expm1(-v), x * np.exp(-x) / -np.expm1(-x)),
                  "ln(1+x)": (operators.log1p, x / (1 + x) / np.log1p(x))}
     for name, (f, wanted) in contrasts.items():
-        report(f"contrast of {name}", relative_error(operators.curve_contrast(f, x), wanted), 1e-12)
+        report.bound(f"contrast of {name}", relative_error(operators.curve_contrast(f, x), wanted), 1e-12)
 
     # Code values: the norm forms scale light, f^p.
     for apply in ("luminance", "max"):
         code = operators.apply_curve(np.tanh, rgb, apply, code_power=2.2)
         light = operators.apply_curve(lambda x: np.tanh(x) ** 2.2, rgb, apply)
-        report(f"code values, apply={apply}: light scaled", relative_error(code**2.2, light), 1e-12)
+        report.bound(f"code values, apply={apply}: light scaled", relative_error(code**2.2, light), 1e-12)
         below = operators.apply_curve(lambda x: x - 0.1, np.full((1, 3), 0.05), apply)
-        report(f"apply={apply}: a curve below 0 gives black", np.abs(below).max(), 1e-300)
+        report.bound(f"apply={apply}: a curve below 0 gives black", np.abs(below).max(), 1e-300)
 
 
 def sobotka_table(n):
@@ -193,7 +180,7 @@ def sobotka_table(n):
     return np.interp(n, nodes, operators.agx_sigmoid(nodes).round(7))
 
 
-def check_sobotka_table():
+def test_sobotka_table(report):
     """With the table his figures come out to 12 digits: so the wider tolerance of those rows is due to it alone."""
     errors = []
     for row in make_operator_rows.read_rows():
@@ -203,10 +190,10 @@ def check_sobotka_table():
             if row["look"]:
                 code = operators.cdl(code, **operators.AGX_LOOKS[row["look"]])
             errors.append(relative_error(code, [float(row[c]) for c in ("out_r", "out_g", "out_b")]))
-    report(f"agx_sobotka through a table like the LUT ({len(errors)})", max(errors), 1e-9)
+    report.bound(f"agx_sobotka through a table like the LUT ({len(errors)})", max(errors), 1e-9)
 
 
-def check_filament_bound():
+def test_filament_bound(report):
     """The bound that aces_filament declares: OpenColorIO's fixed functions have the CTL's hue weight in place of Filament's.
 
     The largest difference on an sRGB display, of any light: a search from the worst of random colors on.
@@ -231,13 +218,13 @@ def check_filament_bound():
         moved = light * 2.0 ** random.normal(0, step, light.shape)
         light = np.where((difference(moved) > largest)[:, None], moved, light)
         largest = difference(light)
-    source = (Path(__file__).resolve().parents[1] / "src" / "operators" / "aces_fits.cpp").read_text()
+    source = (PROJECT / "src" / "operators" / "aces_fits.cpp").read_text()
     bound = float(re.search(r"op\.id = \"aces_filament\";.*?\.cube = ([0-9.e-]+)", source, re.DOTALL)[1])
-    report("aces_filament: what another hue weight makes of any color", largest.max(), bound)
-    report("aces_filament: the declared bound is not above it by more than a hundredth", bound / largest.max() - 1, 0.01)
+    report.bound("aces_filament: what another hue weight makes of any color", largest.max(), bound)
+    report.bound("aces_filament: the declared bound is not above it by more than a hundredth", bound / largest.max() - 1, 0.01)
 
 
-def check_shared(shared):
+def test_shared(report, shared):
     """Figures of check_values.json: the committed rows are theirs, and the parts that have no row."""
     published = list(make_operator_rows.published_rows(shared))
     committed = [row for row in make_operator_rows.read_rows()
@@ -262,11 +249,11 @@ def check_shared(shared):
 
     there, here = by_identity(published), by_identity(committed)
     missing = [row for row in published if off(row, here) > 1]
-    report("rows of check_values.json that operators.csv lacks", len(missing), 0.5, missing[:1])
+    report.bound("rows of check_values.json that operators.csv lacks", len(missing), 0.5, missing[:1])
     stray = [row for row in committed if off(row, there) > 1]
-    report("rows of operators.csv that check_values.json lacks", len(stray), 0.5, stray[:1])
+    report.bound("rows of operators.csv that check_values.json lacks", len(stray), 0.5, stray[:1])
 
-    values = json.loads((Path(shared) / "reference" / "check_values.json").read_text())
+    values = json.loads((shared / "reference" / "check_values.json").read_text())
     sigmoid = {"pivot": (10 / 16.5, 0.18 ** (1 / 2.4)), "slope": 2.4, "powers": (1.5, 1.5)}
     lindbloom = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
                           [0.0193339, 0.1191920, 0.9503041]])
@@ -294,25 +281,4 @@ def check_shared(shared):
     }
     for name, (tolerance, f) in parts.items():
         errors = [relative_error(f(np.array(v["input"])), v["output"]) for v in values if v["operator"] == name]
-        report(f"{name} ({len(errors)})", max(errors), tolerance)
-
-
-def main():
-    check_doctests()
-    check_rows()
-    check_parts()
-    check_apply()
-    check_extremes()
-    check_sobotka_table()
-    check_filament_bound()
-    shared = os.environ.get("TONEWRIGHT_SHARED", "")
-    if shared and (Path(shared) / "reference" / "check_values.json").is_file():
-        check_shared(shared)
-    else:
-        print("skip check_values.json: TONEWRIGHT_SHARED names no folder that holds reference/check_values.json")
-    print(f"{counts[True]} passed, {counts[False]} failed")
-    return 1 if counts[False] else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        report.bound(f"{name} ({len(errors)})", max(errors), tolerance)

@@ -1,27 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """The committed luts/ and ocio_config/ against fresh ones: the same files, texts and numbers.
 
-    python3 tests/parity/test_artifacts.py build/release/bin/tonewright SOURCE_DIR
+    python3 -m pytest tests/parity/test_artifacts.py --tonewright build/release/bin/tonewright
 
 `./run artifacts` writes them anew. Bytes may differ between compilers, C libraries and versions of OpenColorIO, in
 last digits and so in content hashes; names and numbers may not. Each run writes a share of them, picked by the commit: the LUTs
 of one application, and a config of a sixth of the views other than AgX and ACES 2.0. `./run test
 --all` writes everything. tests/cli/test_catalogue.py compares the catalogue in docs/ in the same way. These are golden
-tests: they guard against change. The last line is `N passed, M failed`.
+tests: they guard against change.
 """
 
-import argparse
 import csv
 import re
 import shutil
-import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import ALL, Report, files_of, read_exr, run, share_of, skip, stack  # noqa: E402
+from pictures import ALL, PROJECT, files_of, read_exr, run, share_of, skip, stack
 
 try:
     import PyOpenColorIO as ocio
@@ -287,8 +281,9 @@ def compare_pictures(report, committed, fresh, scratch):
         report.compare(f"{committed.name}/{path}", old, new, BYTE if depth == 8 else CUBE_FOUR_DECIMALS)
 
 
-def check_config_again(report, command, folder):
+def test_config_again(report, command, scratch):
     """A second run into the folder of the first, of one view: which it is makes no difference."""
+    folder = scratch / "again"
     write = [command, "config", "-o", folder, "--views", "hable"]
     run(*write)
     first = files_of(folder)
@@ -300,7 +295,7 @@ def check_config_again(report, command, folder):
     (folder / "luts" / "mine.clf").write_text("of the user")
     with open(folder / "MANIFEST.csv", "a") as manifest:
         manifest.write("luts/old_curve.clf,00000000\n../outside.txt,00000000\n")
-    outside = folder.parent / "outside.txt"
+    outside = scratch / "outside.txt"
     outside.write_text("not ours")
     run(*write)
     again = files_of(folder)
@@ -323,43 +318,38 @@ def write_config(command, committed, folder):
     run(command, "config", "-o", folder, "--views", ",".join(share_of([name for name in rows if name not in slow], 6)))
 
 
-def check_built_in(report, command, folder):
+def test_built_in(report, command, scratch):
     """ACES 2.0 on one display: a 3D LUT, and OpenColorIO's built-in transform where the profile has it."""
-    run(command, "config", "-o", folder, "--views", "ACES 2.0", "--displays", "srgb")
+    run(command, "config", "-o", scratch, "--views", "ACES 2.0", "--displays", "srgb")
     style = "ACES2065-1_to_CIE-XYZ-D65 - SDR-100nit-REC709_2.0"
-    found = [name for name in ("config.ocio", "config-2.5.ocio") if style in (folder / name).read_text()]
+    found = [name for name in ("config.ocio", "config-2.5.ocio") if style in (scratch / name).read_text()]
     report.check("config-2.5.ocio alone: ACES 2.0 is OpenColorIO's built-in transform", found == ["config-2.5.ocio"], found)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    parser.add_argument("source_dir", type=Path)
-    arguments = parser.parse_args()
-    command, source = arguments.command.resolve(), arguments.source_dir.resolve()
-    missing = [name for name in ("luts", "ocio_config") if not (source / name).is_dir()]
-    if missing:
-        skip(f"{' and '.join(missing)} not in the source folder; `./run artifacts` writes them")
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
-        scratch = Path(folder)
-        luts, config = source / "luts", source / "ocio_config"
-        if ALL:
-            run(command, "bake", "--all", scratch / "luts")
-            run(command, "config", "-o", scratch / "ocio_config")
-        else:
-            write_luts(command, luts, scratch / "luts")
-            write_config(command, config, scratch / "ocio_config")
-        compare_folder(report, luts, scratch / "luts", not ALL)
-        if shutil.which("oiiotool"):
-            compare_pictures(report, luts, scratch / "luts", scratch)
-        else:
-            print("skipped: the PNGs of luts (oiiotool is not installed; Debian: openimageio-tools)")
-        compare_folder(report, config, scratch / "ocio_config", not ALL)
-        check_config_again(report, command, scratch / "again")
-        check_built_in(report, command, scratch / "built_in")
-    return report.finish()
+def need_artifacts(folder):
+    if not folder.is_dir():
+        skip(f"{folder.name} not in the source folder; `./run artifacts` writes them")
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+def test_luts(report, command, scratch):
+    luts = PROJECT / "luts"
+    need_artifacts(luts)
+    if ALL:
+        run(command, "bake", "--all", scratch / "luts")
+    else:
+        write_luts(command, luts, scratch / "luts")
+    compare_folder(report, luts, scratch / "luts", not ALL)
+    if shutil.which("oiiotool"):
+        compare_pictures(report, luts, scratch / "luts", scratch)
+    else:
+        print("skipped: the PNGs of luts (oiiotool is not installed; Debian: openimageio-tools)")
+
+
+def test_config(report, command, scratch):
+    config = PROJECT / "ocio_config"
+    need_artifacts(config)
+    if ALL:
+        run(command, "config", "-o", scratch / "ocio_config")
+    else:
+        write_config(command, config, scratch / "ocio_config")
+    compare_folder(report, config, scratch / "ocio_config", not ALL)

@@ -2,30 +2,20 @@
 """Blender's own OpenColorIO config against the operators that make its pictures.
 
     TONEWRIGHT_BLENDER_CONFIG=.../datafiles/colormanagement/config.ocio \\
-        python3 tests/parity/test_blender_config.py build/release/bin/tonewright
+        python3 -m pytest tests/parity/test_blender_config.py --tonewright build/release/bin/tonewright
 
-Needs an OpenColorIO that can read that config: 2.5 for Blender 5.2. The last line is `N passed, M failed`.
+Needs an OpenColorIO that can read that config: 2.5 for Blender 5.2.
 """
 
-import argparse
 import os
 import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
+import pytest
+from operators.pq import pq_decode
+from pictures import skip
 
-sys.path.insert(0, str(Path(__file__).parent / "clients"))
-sys.path.insert(0, str(Path(__file__).parents[2] / "python_check"))
-
-from pictures import Report, skip  # noqa: E402
-
-try:
-    import PyOpenColorIO as ocio
-except ImportError as error:
-    skip(str(error))
-
-from operators.pq import pq_decode  # noqa: E402
+ocio = pytest.importorskip("PyOpenColorIO")
 
 DISPLAYS = {"sRGB": "srgb", "Display P3": "display_p3", "Rec.1886": "rec1886", "Rec.2020": "rec2020",
             "Rec.2100-PQ": "rec2100_pq", "Rec.2100-HLG": "rec2100_hlg"}
@@ -75,10 +65,7 @@ def blenders(config, rgb, display, view, look=""):
     return np.clip(pixels.astype(float), 0, 1)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
+def test_views(report, command):
     path = os.environ.get("TONEWRIGHT_BLENDER_CONFIG", "")
     if not os.path.isfile(path):
         skip("TONEWRIGHT_BLENDER_CONFIG does not name a config of Blender")
@@ -87,7 +74,6 @@ def main():
     except ocio.Exception as error:
         skip(f"OpenColorIO {ocio.GetVersion()}: {str(error).splitlines()[0]}")
     print(f"OpenColorIO {ocio.GetVersion()}, {config.getName() or path}")
-    report = Report()
     rgb = colors()
     jobs = [(display, "AgX", "agx_blender", "") for display in ("sRGB", "Display P3", "Rec.1886", "Rec.2020")]
     jobs += [("sRGB", "AgX", "agx_blender", look) for look in LOOKS]
@@ -100,8 +86,3 @@ def main():
         error = error_of(theirs, mine, DISPLAYS[display])
         report.bound(f"{display}, {view} {look}", error.max(), ACES_20 if operator == "aces_20" else BOUND,
                      f"at {rgb[error.argmax()]}: {theirs[error.argmax()]}, expected {mine[error.argmax()]}")
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

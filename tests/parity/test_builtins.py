@@ -1,32 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenColorIO's built-in ACES output transforms against the operators that they equal.
 
-    python3 tests/parity/test_builtins.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/test_builtins.py --tonewright build/release/bin/tonewright
 
 Compared are the ones that the PyOpenColorIO of this Python has: those of ACES 1 from 2.1 on, those of ACES 2 from 2.4
-on. Light of the limiting primaries and code values: sRGB's for SDR, PQ's for HDR. The last line is `N passed, M failed`.
+on. Light of the limiting primaries and code values: sRGB's for SDR, PQ's for HDR.
 """
 
-import argparse
 import re
 import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
+import pytest
+from operators.pq import pq_encode
+from operators.spaces import rgb_to_xyz, srgb_encode
 
-sys.path.insert(0, str(Path(__file__).parent / "clients"))
-sys.path.insert(0, str(Path(__file__).parents[2] / "python_check"))
-
-from pictures import Report, skip  # noqa: E402
-
-try:
-    import PyOpenColorIO as ocio
-except ImportError as error:
-    skip(str(error))
-
-from operators.pq import pq_encode  # noqa: E402
-from operators.spaces import rgb_to_xyz, srgb_encode  # noqa: E402
+ocio = pytest.importorskip("PyOpenColorIO")
 
 STYLE = "ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - "
 
@@ -95,13 +84,9 @@ def error_of(light, expected, peak):
     return np.minimum(code, np.abs(light - expected) / peak).max(axis=1)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
+def test_built_in(report, command):
     known = set(ocio.BuiltinTransformRegistry())
     print(f"OpenColorIO {ocio.GetVersion()}")
-    report = Report()
     rgb = colors()
     for operator, settings, primaries, name in FORMS:
         if STYLE + name not in known:
@@ -115,8 +100,3 @@ def main():
         report.check(f"{name} max {error[worst]:.2g}, bound {bounds['max']:.2g}", error[worst] <= bounds["max"],
                      f"at ACES2065-1 {rgb[worst]}")
     report.check("some are known", report.passed + report.failed > 10)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -1,30 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """The OpenColorIO config of `tonewright config`: what applications demand of it, and its numbers.
 
-    python3 tests/parity/test_config.py build/release/bin/tonewright SOURCE_DIR
+    python3 -m pytest tests/parity/test_config.py --tonewright build/release/bin/tonewright
 
-The views' own numbers are `tonewright verify`; here they go through check_config.py, the script for users. The last
-line is `N passed, M failed`.
+The views' own numbers are `tonewright verify`; here they go through check_config.py, the script for users.
 """
 
-import argparse
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
+import check_config
+import lut_encodings
 import numpy as np
+import operators
+import pytest
+from pictures import PROJECT, run
 
-sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, run, skip  # noqa: E402
-from lut_encodings import logc3_decode  # noqa: E402  (python_check/, which pictures.py puts on the path)
-
-try:
-    import PyOpenColorIO as ocio
-except ImportError:
-    skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
+ocio = pytest.importorskip("PyOpenColorIO", reason="PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
 
 # Roles that applications look up: OCIO itself and the two interchange spaces, Blender, Nuke and Natron, RV.
 ROLES = ["aces_interchange", "cie_xyz_d65_interchange", "default", "reference", "scene_linear", "rendering", "data",
@@ -74,11 +67,26 @@ ROUND_TRIP = 1e-6
 HDR_ROUND_TRIP = 9 * ROUND_TRIP
 
 
-def check_ociocheck(report, path):
+@pytest.fixture(scope="module")
+def folder(command, tmp_path_factory):
+    """The folder of the config. test_artifacts.py holds the committed one to be what the command writes."""
+    folder = PROJECT / "ocio_config"
+    if not folder.is_dir():
+        folder = tmp_path_factory.mktemp("config")
+        run(command, "config", "-o", folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def config(folder):
+    return ocio.Config.CreateFromFile(str(folder / "config.ocio"))
+
+
+def test_ociocheck(report, folder):
     if not shutil.which("ociocheck"):
         print("skipped: ociocheck is not installed (Debian: opencolorio-tools)")
         return
-    done = subprocess.run(["ociocheck", "--iconfig", path], capture_output=True, text=True, check=False)
+    done = subprocess.run(["ociocheck", "--iconfig", folder / "config.ocio"], capture_output=True, text=True, check=False)
     lines = (done.stdout + done.stderr).splitlines()
     bad = [line for line in lines if re.search("warn|error|fail", line, re.I)]
     report.check("ociocheck passes", done.returncode == 0 and ("passed" in lines or "Tests complete." in lines),
@@ -86,7 +94,11 @@ def check_ociocheck(report, path):
     report.check("ociocheck has no warning", not bad, bad[:3])
 
 
-def check_names(report, config):
+def test_profile(report, config):
+    report.check("profile 2.1", (config.getMajorVersion(), config.getMinorVersion()) == (2, 1))
+
+
+def test_names(report, config):
     spaces = list(config.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL))
     view_names = [view for display in config.getDisplays() for view in config.getViews(display)]
     names = [n for s in spaces for n in [s.getName(), *s.getAliases()]]
@@ -107,7 +119,7 @@ def check_names(report, config):
     report.check("spaces have description, encoding and family", not no_text, no_text)
 
 
-def check_views(report, config):
+def test_views(report, config):
     """Views and displays in their order, shown through view transforms, and every processor can be built."""
     displays = list(config.getDisplays())
     report.check("displays", displays == DISPLAYS and config.getDefaultDisplay() == "sRGB", displays)
@@ -147,7 +159,7 @@ def check_views(report, config):
     report.check("output spaces show what views show", not differ, differ[:3])
 
 
-def check_looks(report, config):
+def test_looks(report, config):
     """A look of its own before the view, for hosts that know looks, and the view that has it built in."""
     looks = list(config.getLookNames())
     report.check("looks", len(looks) == 9 and "AgX - Punchy" in looks and
@@ -167,7 +179,7 @@ def check_looks(report, config):
         report.compare(f"the look Punchy is the view AgX Punchy on {display}", *shown, 2e-5)
 
 
-def check_rules(report, config):
+def test_rules(report, config):
     wrong = [(name, config.getColorSpaceFromFilepath(name)) for name in FILES]
     wrong = [f"{name}: {space}, expected {FILES[name]}" for name, (space, _) in wrong if space != FILES[name]]
     report.check(f"{len(FILES)} names of pictures", not wrong, wrong)
@@ -179,7 +191,7 @@ def slog3_decode(code):
                     (code * 1023 - 95) * 0.01125 / (171.2102946929 - 95))
 
 
-def check_cameras(report, config, command, operators, lut_encodings):
+def test_cameras(report, config, command):
     """The makers' matrices, and one gamut of a camera in `--input` and in the config."""
     codes = np.concatenate([np.repeat(np.arange(33)[:, None] / 32, 3, axis=1),
                             np.random.default_rng(8).uniform(0.2, 0.8, (2000, 3))])
@@ -202,7 +214,7 @@ def check_cameras(report, config, command, operators, lut_encodings):
     shown = apply(config, "Cineon", "Linear Rec.709", codes)
     scale = np.abs(film).max(axis=1, keepdims=True) + 0.01
     report.compare("Cineon is Kodak's", shown / scale, film / scale, 1e-5)
-    for name, space, decode in (("ARRI LogC3 (EI800)", "lin_awg3", logc3_decode),
+    for name, space, decode in (("ARRI LogC3 (EI800)", "lin_awg3", lut_encodings.logc3_decode),
                                 ("S-Log3 S-Gamut3", "lin_sgamut3", slog3_decode),
                                 ("S-Log3 S-Gamut3.Cine", "lin_sgamut3cine", slog3_decode)):
         image = codes.astype(np.float32)
@@ -214,7 +226,7 @@ def check_cameras(report, config, command, operators, lut_encodings):
         report.compare(f"{space} is the config's {name}", image, truth, CAMERA)
 
 
-def check_round_trips(report, config, folder):
+def test_round_trips(report, config, folder):
     """The README's figures for the inverse, for colors of its kind, without loss and by default."""
     stated = {}
     for line in (folder / "README.md").read_text().splitlines():
@@ -237,7 +249,7 @@ def check_round_trips(report, config, folder):
                          np.quantile(np.abs(again - there).max(1), 0.999), 3 * bound + 1e-6)
 
 
-def check_inverses(report, config):
+def test_inverses(report, config):
     """Cubes that lead back are tables of their own: OpenColorIO's inversion of a cube is coarse on the GPU."""
     inverted, silent, dark, count = [], [], [], 0
     for space in config.getColorSpaces():
@@ -266,7 +278,7 @@ def check_inverses(report, config):
     report.check("black comes back as black", not dark, dark[:5])
 
 
-def check_files(report, folder):
+def test_files(report, folder):
     names = sorted(p.name for p in (folder / "luts").iterdir())
     odd = [n for n in names if not re.fullmatch(r"[a-z0-9_]+\.(clf|ctf)", n) or re.search(r"_[0-9a-f]{8}\.", n)]
     report.check(f"{len(names)} LUT files have plain ASCII names without a hash", names and not odd, odd)
@@ -293,7 +305,7 @@ def apply(config, source, target, rgb, form=ocio.OPTIMIZATION_LOSSLESS):
     return image
 
 
-def check_spaces(report, config, operators):
+def test_spaces(report, config):
     operators.PRIMARIES["egamut"] = EGAMUT
     linear = {s.getName() for s in config.getColorSpaces() if s.getEncoding() == "scene-linear"}
     report.check("linear spaces", linear == set(LINEAR), linear ^ set(LINEAR))
@@ -323,40 +335,6 @@ def check_spaces(report, config, operators):
                    ROUND_TRIP)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    parser.add_argument("source_dir", type=Path)
-    arguments = parser.parse_args()
-    sys.path.insert(0, str(arguments.source_dir / "python_check"))
-    import check_config
-    import lut_encodings
-    import operators
-
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as scratch:
-        # The committed one is held to be what the command writes by test_artifacts.py.
-        folder = arguments.source_dir.resolve() / "ocio_config"
-        if not folder.is_dir():
-            folder = Path(scratch) / "config"
-            run(arguments.command.resolve(), "config", "-o", folder)
-        path = folder / "config.ocio"
-        check_ociocheck(report, path)
-        config = ocio.Config.CreateFromFile(str(path))
-        report.check("profile 2.1", (config.getMajorVersion(), config.getMinorVersion()) == (2, 1))
-        check_names(report, config)
-        check_views(report, config)
-        check_looks(report, config)
-        check_rules(report, config)
-        check_round_trips(report, config, folder)
-        check_inverses(report, config)
-        check_files(report, folder)
-        check_spaces(report, config, operators)
-        check_cameras(report, config, arguments.command.resolve(), operators, lut_encodings)
-        report.check("check_config.py", check_config.main([str(path)]) == 0)
-        report.check("check_config.py without a config", check_config.main([str(folder / "none.ocio")]) == 2)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+def test_check_config(report, folder):
+    report.check("check_config.py", check_config.main([str(folder / "config.ocio")]) == 0)
+    report.check("check_config.py without a config", check_config.main([str(folder / "none.ocio")]) == 2)

@@ -1,23 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Known defects: `tonewright verify --lut` recognizes each of them, and nothing else shows them.
 
-    python3 tests/parity/test_defects.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/test_defects.py --tonewright build/release/bin/tonewright
 
-The LUTs come from the NumPy formulas of python_check, not from the program. The last line is `N passed, M failed`.
+The LUTs come from the NumPy formulas of python_check, not from the program.
 """
 
-import argparse
 import json
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import PROJECT, Report, log2_decode, run, share_of  # noqa: E402
-import operators  # noqa: E402
+import operators
+from pictures import PROJECT, log2_decode, run, share_of
 
 # Each defect and the operator that it should have been, with the settings of that operator.
 MEANT = {
@@ -41,11 +35,11 @@ def write_cube(path, size, operator, settings):
     np.savetxt(path, operators.view(operator, light, settings), fmt="%.7g", header=f"LUT_3D_SIZE {size}", comments="")
 
 
-def check_recognized(report, command, folder):
+def test_recognized(report, command, scratch):
     report.check("every defect has a LUT here", set(MEANT) == set(operators.DEFECTS), set(operators.DEFECTS) ^ set(MEANT))
     how = "log2:-10:6.5 input (lin_rec709) and srgb output, max error "
     for defect, (meant, settings) in share_of(list(MEANT.items()), 2):
-        path = folder / f"{defect}.cube"
+        path = scratch / f"{defect}.cube"
         write_cube(path, SIZES.get(defect, 33), defect, {})
         line = run(command, "verify", "--lut", path).splitlines()[0]
         report.check(f"{defect}: verify --lut says so in one line",
@@ -62,7 +56,7 @@ def check_recognized(report, command, folder):
     report.check("where operators are named, only those count", line == f"{path} is none of these; the nearest:", line)
 
 
-def check_hidden(report, command, folder):
+def test_hidden(report, command, scratch):
     """What the program lists and writes of all operators, and what it suggests. The committed files are golden."""
     texts = {" ".join(arguments): run(command, *arguments) for arguments in (
         ["--help-all"], ["list"], ["list", "--json"], ["list", "--markdown"], ["shader", "--list"], ["list", "agx_minimal"],
@@ -75,23 +69,8 @@ def check_hidden(report, command, folder):
         report.check(f"in {what}: none", not shown, shown)
     for defect in MEANT:
         for arguments in (["eval", defect], ["apply", "in.exr", "out.png", "--operator", defect], ["list", defect],
-                          ["bake", defect, "-o", folder / "out.cube"], ["eval", defect + "x"]):
+                          ["bake", defect, "-o", scratch / "out.cube"], ["eval", defect + "x"]):
             done = subprocess.run([command, *arguments], input="", capture_output=True, text=True, check=False)
             answer = done.stderr.partition("; expected")[2]
             report.check(f"{arguments[0]} {defect}", done.returncode == 2 and done.stderr.count("\n") == 1 and answer
                          and not any(other in answer for other in MEANT), done.stderr)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        check_recognized(report, command, Path(name))
-        check_hidden(report, command, Path(name))
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

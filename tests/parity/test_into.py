@@ -1,31 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """`tonewright config --into`: somebody's config with our views, looks and output spaces, and all of theirs as it was.
 
-    python3 tests/parity/test_into.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/test_into.py --tonewright build/release/bin/tonewright
 
 The configs are small stand-ins: one built as the ACES configs are, one with references of its own; ocio_config/ of the
 working directory; and the ACES CG and Studio configs themselves where TONEWRIGHT_NEWER_OCIO runs an OpenColorIO that has
-them. The last line is `N passed, M failed`.
+them.
 """
 
-import argparse
 import os
 import re
 import shutil
 import subprocess
 import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
+import pytest
+from pictures import ALL, PROJECT
 
-sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import ALL, Report, skip  # noqa: E402
-
-try:
-    import PyOpenColorIO as ocio
-except ImportError:
-    skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
+ocio = pytest.importorskip("PyOpenColorIO", reason="PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
 
 # ACES2065-1 and CIE XYZ D65 are the references, displays and the rendering OpenColorIO's built-ins.
 ACES = """ocio_profile_version: 2.1
@@ -297,7 +290,7 @@ def lines_that_are_gone(before, after):
     return [line for line in before if not any(line == other for other in rest)]
 
 
-def check_text(report, command, root):
+def test_text(report, command, scratch):
     """A config that is written by hand: all of it stays as it is, --update and --remove take out what is ours."""
     variants = {"by hand": BY_HAND, "Windows": BY_HAND.replace("\n", "\r\n"), "a line end": BY_HAND + "\n",
                 "no search path": BY_HAND.replace('search_path: "luts"  # where the LUTs are\n', ""),
@@ -310,7 +303,7 @@ def check_text(report, command, root):
             continue
         # Only AgX has looks, and it takes ten seconds.
         second = ("agx_blender", "AgX") if kind == "with looks" else ("clamp", "Standard")
-        folder = root / kind
+        folder = scratch / kind
         folder.mkdir()
         path = folder / "mine.ocio"
         path.write_bytes(text.encode())
@@ -376,9 +369,9 @@ def check_text(report, command, root):
         report.check("--remove without --into", done.returncode == 2 and "--into" in done.stderr, done.stderr)
 
 
-def check_edits(report, command, root):
+def test_edits(report, command, scratch):
     """Short texts of ours are found again: a word at the end of a line, the same view on two displays."""
-    folder = root / "edits"
+    folder = scratch / "edits"
     folder.mkdir()
     path = folder / "s.ocio"
     raw = "    - !<View> {name: Raw, colorspace: Raw}\n"
@@ -421,16 +414,16 @@ def shows(path, view, display="sRGB - Display"):
     return True
 
 
-def check_links(report, command, root):
+def test_links(report, command, scratch):
     """A config by the name of a link: the file itself is edited, and OpenColorIO finds the tables by both names."""
-    studio, shot, other = root / "studio", root / "shot", root / "show" / "other"
+    studio, shot, other = scratch / "studio", scratch / "shot", scratch / "show" / "other"
     for folder in (studio, shot, other):
         folder.mkdir(parents=True)
     path, link, far = studio / "config.ocio", shot / "c.ocio", other / "config.ocio"
     path.write_text(ACES)
     link.symlink_to("../studio/config.ocio")
     far.symlink_to("../../shot/c.ocio")  # through another link
-    (root / "mount").symlink_to("studio")  # a link above it
+    (scratch / "mount").symlink_to("studio")  # a link above it
     done = call(command, "--into", link, "--views", "hable", "--backup")
     report.check("a link: --into", done.returncode == 0 and not done.stderr and f"edited {path.resolve()}" in done.stdout,
                  done.stdout + done.stderr)
@@ -441,8 +434,8 @@ def check_links(report, command, root):
                  sorted(p.name for p in shot.iterdir()) == ["c.ocio", "tonewright"]
                  and os.readlink(shot / "tonewright") == "../studio/tonewright")
     report.check("a link: OpenColorIO finds the tables by both names, and by a folder's link",
-                 all(shows(p, "Hable") for p in (path, link, root / "mount" / "config.ocio")))
-    done = call(command, "--into", root / "mount" / "config.ocio", "--update", "--views", "clamp")
+                 all(shows(p, "Hable") for p in (path, link, scratch / "mount" / "config.ocio")))
+    done = call(command, "--into", scratch / "mount" / "config.ocio", "--update", "--views", "clamp")
     report.check("a link above the config: --update", done.returncode == 0 and shows(path, "Standard") and shows(link, "Standard"),
                  done.stderr)
     done = call(command, "--into", far, "--update")
@@ -483,10 +476,10 @@ def check_links(report, command, root):
     done = call(command, "--into", studio / "gone.ocio", "--views", "clamp")
     report.check("a link to nothing", done.returncode == 3 and "gone.ocio" in done.stderr and done.stderr.count("\n") == 1,
                  done.stderr)
-    os.link(path, root / "hard.ocio")
+    os.link(path, scratch / "hard.ocio")
     done = call(command, "--into", path, "--views", "clamp")
     report.check("a hard link: one line, and the other name keeps the old contents", done.returncode == 0
-                 and "2 hard links" in done.stderr and done.stderr.count("\n") == 1 and (root / "hard.ocio").read_text() == ACES
+                 and "2 hard links" in done.stderr and done.stderr.count("\n") == 1 and (scratch / "hard.ocio").read_text() == ACES
                  and shows(path, "Standard"), done.stderr)
 
 
@@ -495,14 +488,14 @@ TABLE = ('<?xml version="1.0" encoding="UTF-8"?>\n<ProcessList compCLFversion="3
          'outBitDepth="32f">\n<Array dim="2 1">\n0\n1\n</Array>\n</LUT1D>\n</ProcessList>\n')
 
 
-def check_record(report, command, root):
+def test_record(report, command, scratch):
     """What commit 57376a0 wrote, as stored in tests/data/into_record, without its tables."""
-    stored = Path(__file__).resolve().parents[1] / "data" / "into_record"
+    stored = PROJECT / "tests/data/into_record"
     before = (stored / "before.ocio").read_text()
     tables = ("hable_curve_61ddf5e1.clf", "hable_inverse_curve_78754295.clf")
     for way in ("by its name", "by a link"):
         for action in ("--update", "--remove"):
-            folder = root / f"record {way} {action}"
+            folder = scratch / f"record {way} {action}"
             shutil.copytree(stored, folder / "studio")
             (folder / "studio" / "before.ocio").unlink()
             path = real = folder / "studio" / "studio.ocio"
@@ -532,9 +525,9 @@ def check_record(report, command, root):
                          done.stderr)
 
 
-def check_faults(report, command, root):
+def test_faults(report, command, scratch):
     """Configs that lack what they name, and damaged tables: one line with both names, exit code 3, nothing changed."""
-    path = root / "faulty.ocio"
+    path = scratch / "faulty.ocio"
     for what, old, new, words in (
             ("a role that names no space", "aces_interchange: ACES2065-1", "aces_interchange: ACES2065",
              "role aces_interchange is ACES2065, which is no color space"),
@@ -552,7 +545,7 @@ def check_faults(report, command, root):
         done = call(command, "--into", path, "--views", "clamp")
         report.check(f"{what}: one line with both names, exit code 3", done.returncode == 3 and done.stderr.count("\n") == 1
                      and words in done.stderr and "faulty.ocio" in done.stderr and text != ACES, (done.returncode, done.stderr))
-        report.check(f"{what}: nothing has changed", path.read_text() == text and not (root / "tonewright").exists())
+        report.check(f"{what}: nothing has changed", path.read_text() == text and not (scratch / "tonewright").exists())
     # OpenColorIO ignores the case of views, and lists active ones only.
     for name in ("hable", "Hable"):
         text = ACES.replace("    - !<View> {name: SDR Video, view_transform: SDR Video, display_colorspace: Rec",
@@ -564,13 +557,13 @@ def check_faults(report, command, root):
                      and "Hable already" in done.stderr, (done.returncode, done.stderr))
     path.write_text(ACES)
     call(command, "--into", path, "--views", "hable")
-    table = next((root / "tonewright").glob("hable_curve*.clf"))
+    table = next((scratch / "tonewright").glob("hable_curve*.clf"))
     whole = table.read_bytes()
     table.write_bytes(whole[:300])
     done = call(command, "--into", path, "--update")
     report.check("a damaged table: --update writes it again", done.returncode == 0 and table.read_bytes() == whole, done.stderr)
-    record = root / "tonewright" / "faulty.ocio.yaml"
-    outside = root / "outside.clf"
+    record = scratch / "tonewright" / "faulty.ocio.yaml"
+    outside = scratch / "outside.clf"
     outside.write_text("mine")
     for name in ("../outside.clf", "tonewright/../../outside.clf", str(outside), "tonewright/..", "tonewright/"):
         text = record.read_text()
@@ -581,13 +574,13 @@ def check_faults(report, command, root):
         record.write_text(text)
 
 
-def check_environment(report, command, root):
+def test_environment(report, command, scratch):
     """OpenColorIO's variables change neither the bytes of a config nor what is measured."""
     hostile = {"OCIO_OPTIMIZATION_FLAGS": "0", "OCIO_ACTIVE_DISPLAYS": "none", "OCIO_ACTIVE_VIEWS": "none",
                "OCIO_INACTIVE_COLORSPACES": "ACEScg", "OCIO_USER_CATEGORIES": "x", "OCIO": "/nowhere/config.ocio"}
     wanted = {}
     for kind, more in (("plain", {}), ("variables", hostile)):
-        folder = root / f"environment {kind}"
+        folder = scratch / f"environment {kind}"
         folder.mkdir()
         (folder / "mine.ocio").write_text(ACES)
         environment = dict({k: v for k, v in os.environ.items() if not k.startswith("OCIO")}, **more)
@@ -663,9 +656,9 @@ def older(text):
     return text.replace("!<GradingHueCurveTransform> {style: log}", "!<MatrixTransform> {}")
 
 
-def check_newer_text(report, command, root, newer):
+def test_newer_text(report, command, scratch):
     """A config of profile 2.5, whatever OpenColorIO this is: its text is kept, and what cannot be run is named."""
-    folder = root / "newer"
+    folder = scratch / "newer"
     folder.mkdir()
     path = folder / "c.ocio"
     path.write_text(NEWER)
@@ -691,7 +684,7 @@ def check_newer_text(report, command, root, newer):
                             ("Rec.1886 Rec.709 - Display", "rec1886")):
         check_picture(report, command, readable, display, "Hable", ["hable"], option, ("ACEScg", 1))
         check_picture(report, command, readable, display, "AgX", ["agx_blender"], option, ("ACEScg", 1))
-    if newer:
+    if newer := os.environ.get("TONEWRIGHT_NEWER_OCIO"):
         hashes = hashes_of(newer, path)
         report.check("profile 2.5: the newer OpenColorIO shows it", len(hashes["Hable on sRGB - Display"]) == 64, hashes)
     once = path.read_text()
@@ -717,7 +710,15 @@ def check_newer_text(report, command, root, newer):
                      and done.stderr.count("\n") == 1 and "c.ocio" in done.stderr, done.stderr)
 
 
-def check_newer_published(report, command, root, newer):
+@pytest.fixture
+def newer():
+    """The program that runs a newer OpenColorIO."""
+    if not os.environ.get("TONEWRIGHT_NEWER_OCIO"):
+        pytest.skip("the ACES CG and Studio configs, TONEWRIGHT_NEWER_OCIO is not set")
+    return os.environ["TONEWRIGHT_NEWER_OCIO"]
+
+
+def test_newer_published(report, command, scratch, newer):
     """The ACES CG and Studio configs of profile 2.5, and our own: run in the newer OpenColorIO."""
     names = "import PyOpenColorIO as o; print(*(c[0] for c in o.BuiltinConfigRegistry().getBuiltinConfigs()), sep='\\n')"
     builtin = subprocess.run([newer, "python3", "-c", names], capture_output=True, text=True, check=True).stdout.split()
@@ -727,12 +728,11 @@ def check_newer_published(report, command, root, newer):
             write = f"import PyOpenColorIO as o; print(o.Config.CreateFromBuiltinConfig({name!r}).serialize())"
             configs[name] = subprocess.run([newer, "python3", "-c", write], capture_output=True, text=True, check=True).stdout
     if not configs:
-        print("skipped: the newer OpenColorIO has no configs of profile 2.5")
-        return
-    subprocess.run([command, "config", "-o", root / "ours 2.5", "--views", "clamp", "--profile", "2.5"], check=True)
-    configs["ours 2.5"] = (root / "ours 2.5" / "config.ocio").read_text()
+        pytest.skip("the newer OpenColorIO has no configs of profile 2.5")
+    subprocess.run([command, "config", "-o", scratch / "ours 2.5", "--views", "clamp", "--profile", "2.5"], check=True)
+    configs["ours 2.5"] = (scratch / "ours 2.5" / "config.ocio").read_text()
     for name, text in configs.items():
-        folder = root / name
+        folder = scratch / name
         folder.mkdir(exist_ok=True)
         path = folder / "config.ocio"
         path.write_text(text)
@@ -753,9 +753,9 @@ def check_newer_published(report, command, root, newer):
                      done.stderr)
 
 
-def check_published(report, command, root):
-    """The ACES CG and Studio configs of profile 2.1, which OpenColorIO 2.2 and newer have built in, and our own."""
-    own = root / "ours"
+def test_ours(report, command, scratch):
+    """Our own config."""
+    own = scratch / "ours"
     if ALL:
         shutil.copytree("ocio_config", own)
     else:  # all of its files, loaded three times, are ten seconds
@@ -766,14 +766,12 @@ def check_published(report, command, root):
     report.check("ours: --into", done.returncode == 0 and not done.stderr, done.stderr)
     after = numbers_of(own / "config.ocio")
     report.check(f"ours: all {len(before)} make the same numbers", all(after.get(k) == before[k] for k in before))
-    newer = os.environ.get("TONEWRIGHT_NEWER_OCIO")
-    check_newer_text(report, command, root, newer)
-    if not newer:
-        print("skipped: the ACES CG and Studio configs, TONEWRIGHT_NEWER_OCIO is not set")
-        return
-    check_newer_published(report, command, root, newer)
+
+
+def test_published(report, command, scratch, newer):
+    """The ACES CG and Studio configs of profile 2.1, which OpenColorIO 2.2 and newer have built in."""
     for name in ("cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "studio-config-v1.0.0_aces-v1.3_ocio-v2.1"):
-        folder = root / name
+        folder = scratch / name
         folder.mkdir()
         path = folder / "config.ocio"
         write = f"import PyOpenColorIO as o; print(o.Config.CreateFromBuiltinConfig({name!r}).serialize())"
@@ -786,86 +784,72 @@ def check_published(report, command, root):
         report.check(f"{name}: the newer OpenColorIO takes the result", done.stdout.strip() == "loaded", done.stderr[-300:])
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        for kind, text, displays, space in (
-                ("aces", ACES, {"sRGB - Display": "srgb", "PQ": "rec2100_pq"}, ("ACEScg", 1)),
-                ("own", OWN, {"Monitor": "srgb"}, ("working", 2))):
-            folder = Path(name) / kind
-            folder.mkdir()
-            path = folder / "mine.ocio"
-            path.write_text(text)
-            before = numbers_of(path)
-            done = call(command, "--into", path, "--views", "AgX,hable", "--operator", "reinhard_extended:white=6",
-                        "--name", "Studio")
-            report.check(f"{kind}: --into", done.returncode == 0 and not done.stderr, done.stderr)
-            report.check(f"{kind}: the table of errors", all(d in done.stdout for d in displays), done.stdout)
-            after = numbers_of(path)
-            changed = [k for k in before if after.get(k) != before[k]]
-            report.check(f"{kind}: all of theirs makes the same numbers", not changed, changed)
-            report.check(f"{kind}: nothing is left behind", sorted(p.name for p in folder.iterdir())
-                         == ["mine.ocio", "tonewright"], list(folder.iterdir()))
-            tables = sorted(p.name for p in (folder / "tonewright").iterdir() if p.name != "mine.ocio.yaml")
-            unhashed = [n for n in tables if not re.fullmatch(r"[a-z0-9_]+_[0-9a-f]{8}\.clf", n)]
-            report.check(f"{kind}: {len(tables)} tables whose names have a hash", tables and not unhashed, unhashed)
-            for display, option in displays.items():
-                hdr = " - HDR 1000 nits" if option == "rec2100_pq" else ""
-                check_picture(report, command, path, display, "AgX" + hdr, ["agx_blender"], option, space)
-                check_picture(report, command, path, display, "Studio", ["reinhard_extended", "--set", "white=6"],
-                              option, space)
-            config = ocio.Config.CreateFromFile(str(path))
-            report.check(f"{kind}: looks", "AgX - Punchy" in list(config.getLookNames()), list(config.getLookNames()))
-            if shutil.which("ociocheck"):
-                checked = subprocess.run(["ociocheck", "--iconfig", path], capture_output=True, text=True, check=False)
-                report.check(f"{kind}: ociocheck", checked.returncode == 0, checked.stdout[-300:])
+@pytest.mark.parametrize(("kind", "text", "displays", "space"), [
+    ("aces", ACES, {"sRGB - Display": "srgb", "PQ": "rec2100_pq"}, ("ACEScg", 1)),
+    ("own", OWN, {"Monitor": "srgb"}, ("working", 2))], ids=["aces", "own"])
+def test_views(report, command, scratch, kind, text, displays, space):
+    folder = scratch / kind
+    folder.mkdir()
+    path = folder / "mine.ocio"
+    path.write_text(text)
+    before = numbers_of(path)
+    done = call(command, "--into", path, "--views", "AgX,hable", "--operator", "reinhard_extended:white=6",
+                "--name", "Studio")
+    report.check(f"{kind}: --into", done.returncode == 0 and not done.stderr, done.stderr)
+    report.check(f"{kind}: the table of errors", all(d in done.stdout for d in displays), done.stdout)
+    after = numbers_of(path)
+    changed = [k for k in before if after.get(k) != before[k]]
+    report.check(f"{kind}: all of theirs makes the same numbers", not changed, changed)
+    report.check(f"{kind}: nothing is left behind", sorted(p.name for p in folder.iterdir())
+                 == ["mine.ocio", "tonewright"], list(folder.iterdir()))
+    tables = sorted(p.name for p in (folder / "tonewright").iterdir() if p.name != "mine.ocio.yaml")
+    unhashed = [n for n in tables if not re.fullmatch(r"[a-z0-9_]+_[0-9a-f]{8}\.clf", n)]
+    report.check(f"{kind}: {len(tables)} tables whose names have a hash", tables and not unhashed, unhashed)
+    for display, option in displays.items():
+        hdr = " - HDR 1000 nits" if option == "rec2100_pq" else ""
+        check_picture(report, command, path, display, "AgX" + hdr, ["agx_blender"], option, space)
+        check_picture(report, command, path, display, "Studio", ["reinhard_extended", "--set", "white=6"],
+                      option, space)
+    config = ocio.Config.CreateFromFile(str(path))
+    report.check(f"{kind}: looks", "AgX - Punchy" in list(config.getLookNames()), list(config.getLookNames()))
+    if shutil.which("ociocheck"):
+        checked = subprocess.run(["ociocheck", "--iconfig", path], capture_output=True, text=True, check=False)
+        report.check(f"{kind}: ociocheck", checked.returncode == 0, checked.stdout[-300:])
 
-            whole = {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
-            done = call(command, "--into", path, "--views", "hable")
-            report.check(f"{kind}: a name that is taken", done.returncode == 2 and "Hable already" in done.stderr
-                         and done.stderr.count("\n") == 1, done.stderr)
-            report.check(f"{kind}: nothing has changed",
-                         whole == {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()})
-            done = call(command, "--into", path, "--operator", "hable", "--name", "Hable Two")
-            report.check(f"{kind}: once more, an operator alone", done.returncode == 0 and "\nadded 1 view transform: Hable Two\n"
-                         in f"\n{done.stdout}" and "look" not in done.stdout, done.stdout + done.stderr)
-            moved = folder.parent / f"{kind} moved"
-            shutil.move(folder, moved)
-            report.check(f"{kind}: the folder can be moved", ("AgX" in {k[1] for k in numbers_of(moved / "mine.ocio")
-                                                                        if isinstance(k, tuple)}))
-        check_text(report, command, Path(name))
-        check_edits(report, command, Path(name))
-        for check in (check_links, check_record, check_faults, check_environment):
-            folder = Path(name) / check.__name__
-            folder.mkdir()
-            check(report, command, folder)
-        check_published(report, command, Path(name))
-        bare = Path(name) / "bare.ocio"
-        bare.write_text(ACES.replace("cie_xyz_d65_interchange: CIE-XYZ-D65, ", ""))
-        done = call(command, "--into", bare, "--views", "hable")
-        report.check("no interchange role", done.returncode == 3 and "bare.ocio has no role cie_xyz_d65_interchange"
-                     in done.stderr, done.stderr)
-        bare.write_text(ACES.replace("view_transform: SDR Video, display_colorspace: <USE_DISPLAY_NAME>", "colorspace: Raw")
-                        .replace("view_transform: SDR Video, display_colorspace: Rec.2100-PQ", "colorspace: Raw"))
-        done = call(command, "--into", bare, "--views", "hable")
-        report.check("no display of ours", done.returncode == 3 and "bare.ocio has no display that" in done.stderr, done.stderr)
-        for words, old, new in (("cannot insert into YAML", "search_path: luts", 'search_path: "l\\x75ts"'),
-                                ("looks is empty; expected at least one", "view_transforms:", "looks:\nview_transforms:")):
-            bare.write_text(ACES.replace(old, new, 1))
-            done = call(command, "--into", bare, "--views", "AgX" if "looks" in new else "clamp")
-            report.check(f"{words}: the config's fault", done.returncode == 3 and f"bare.ocio: {words}" in done.stderr,
-                         done.stderr)
-        done = call(command, "--into", Path(name) / "none.ocio")
-        report.check("no file", done.returncode == 3 and "none.ocio" in done.stderr, done.stderr)
-        done = call(command, "--into", bare, "-o", name)
-        report.check("--into and -o", done.returncode == 2, done.stderr)
-        done = call(command)
-        report.check("neither", done.returncode == 2 and "-o" in done.stderr, done.stderr)
-    return report.finish()
+    whole = {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+    done = call(command, "--into", path, "--views", "hable")
+    report.check(f"{kind}: a name that is taken", done.returncode == 2 and "Hable already" in done.stderr
+                 and done.stderr.count("\n") == 1, done.stderr)
+    report.check(f"{kind}: nothing has changed",
+                 whole == {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()})
+    done = call(command, "--into", path, "--operator", "hable", "--name", "Hable Two")
+    report.check(f"{kind}: once more, an operator alone", done.returncode == 0 and "\nadded 1 view transform: Hable Two\n"
+                 in f"\n{done.stdout}" and "look" not in done.stdout, done.stdout + done.stderr)
+    moved = folder.parent / f"{kind} moved"
+    shutil.move(folder, moved)
+    report.check(f"{kind}: the folder can be moved", ("AgX" in {k[1] for k in numbers_of(moved / "mine.ocio")
+                                                                if isinstance(k, tuple)}))
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+def test_refusals(report, command, scratch):
+    bare = scratch / "bare.ocio"
+    bare.write_text(ACES.replace("cie_xyz_d65_interchange: CIE-XYZ-D65, ", ""))
+    done = call(command, "--into", bare, "--views", "hable")
+    report.check("no interchange role", done.returncode == 3 and "bare.ocio has no role cie_xyz_d65_interchange"
+                 in done.stderr, done.stderr)
+    bare.write_text(ACES.replace("view_transform: SDR Video, display_colorspace: <USE_DISPLAY_NAME>", "colorspace: Raw")
+                    .replace("view_transform: SDR Video, display_colorspace: Rec.2100-PQ", "colorspace: Raw"))
+    done = call(command, "--into", bare, "--views", "hable")
+    report.check("no display of ours", done.returncode == 3 and "bare.ocio has no display that" in done.stderr, done.stderr)
+    for words, old, new in (("cannot insert into YAML", "search_path: luts", 'search_path: "l\\x75ts"'),
+                            ("looks is empty; expected at least one", "view_transforms:", "looks:\nview_transforms:")):
+        bare.write_text(ACES.replace(old, new, 1))
+        done = call(command, "--into", bare, "--views", "AgX" if "looks" in new else "clamp")
+        report.check(f"{words}: the config's fault", done.returncode == 3 and f"bare.ocio: {words}" in done.stderr,
+                     done.stderr)
+    done = call(command, "--into", scratch / "none.ocio")
+    report.check("no file", done.returncode == 3 and "none.ocio" in done.stderr, done.stderr)
+    done = call(command, "--into", bare, "-o", scratch)
+    report.check("--into and -o", done.returncode == 2, done.stderr)
+    done = call(command)
+    report.check("neither", done.returncode == 2 and "-o" in done.stderr, done.stderr)

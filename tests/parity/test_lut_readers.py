@@ -1,30 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reading LUT files like OpenColorIO and ffmpeg: each dialect of each format, with the same numbers or refused by all.
 
-    python3 tests/parity/test_lut_readers.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/test_lut_readers.py --tonewright build/release/bin/tonewright
 
 The script writes small files from the formats' specifications, and reads each with `tonewright eval --lut`, with
 PyOpenColorIO and, where ffmpeg has the format, with its filters. A file that OpenColorIO does not read has its reason in
-the table below. The last line is `N passed, M failed`.
+the table below.
 """
 
-import argparse
 import shutil
 import struct
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
+import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, skip  # noqa: E402
-
-try:
-    import PyOpenColorIO as ocio
-except ImportError:
-    skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
+ocio = pytest.importorskip("PyOpenColorIO", reason="PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
 
 # All readers interpolate in float: a few roundings of numbers up to 1.
 FLOAT32 = 2e-6
@@ -172,6 +163,9 @@ FFMPEG_FILES = {("a.cube", "Adobe's"): "lut3d", ("a.cube", "CRLF"): "lut3d", ("a
                 ("a.csp", "3D"): "lut3d"}
 
 
+ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)
+
+
 def of_ours(command, path):
     lines = "".join(f"{r!r} {g!r} {b!r}\n" for r, g, b in COLORS.tolist())
     done = subprocess.run([command, "eval", "--lut", path], input=lines, capture_output=True, text=True, check=False)
@@ -203,44 +197,30 @@ def of_ffmpeg(path, kind):
     return np.frombuffer(done.stdout, np.float32).reshape(3, -1).T[:, [2, 0, 1]]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)
+@pytest.mark.parametrize(("file", "what", "text", "who", "words"), FILES, ids=[f"{file[2:]}, {what}" for file, what, *_ in FILES])
+def test_file(report, command, scratch, file, what, text, who, words):
+    # A folder each: OpenColorIO keeps files by their names.
+    path = scratch / file
+    path.write_bytes(text.encode())
+    title = f"{file[1:]}, {what}"
+    (ours, done), theirs = of_ours(command, path), of_opencolorio(path)
+    report.check(f"{title}: OpenColorIO {'reads' if who == BOTH else 'refuses'} it", (theirs is not None) == (who == BOTH))
+    if who == NEITHER:
+        report.check(f"{title}: refused in one line", done.returncode == 3 and words in done.stderr
+                     and done.stderr.count("\n") == 1, done.stderr)
+        return
+    if not report.check(f"{title}: Tonewright reads it", ours is not None, done.stderr):
+        return
+    if who == BOTH:
+        report.compare(f"{title}: as OpenColorIO", ours, theirs.astype(float), FLOAT32)
+    said = "is unknown and ignored" in done.stderr
+    report.check(f"{title}: a line names a keyword that is ignored", said == ("keyword" in what or what.startswith("LUT_IN")),
+                 done.stderr)
+    kind = FFMPEG_FILES.get((file, what))
     # ffmpeg is not asked about DOMAIN_MIN: ffmpeg 5.1 divides by the domain and does not subtract its beginning.
-    has_ffmpeg = shutil.which("ffmpeg")
-    if not has_ffmpeg:
+    if kind and not shutil.which("ffmpeg"):
         print("skipped: the comparison with ffmpeg, which is not installed")
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        for i, (file, what, text, who, words) in enumerate(FILES):
-            # A folder each: OpenColorIO keeps files by their names.
-            path = Path(name) / str(i) / file
-            path.parent.mkdir()
-            path.write_bytes(text.encode())
-            title = f"{file[1:]}, {what}"
-            (ours, done), theirs = of_ours(command, path), of_opencolorio(path)
-            report.check(f"{title}: OpenColorIO {'reads' if who == BOTH else 'refuses'} it",
-                         (theirs is not None) == (who == BOTH))
-            if who == NEITHER:
-                report.check(f"{title}: refused in one line", done.returncode == 3 and words in done.stderr
-                             and done.stderr.count("\n") == 1, done.stderr)
-                continue
-            if not report.check(f"{title}: Tonewright reads it", ours is not None, done.stderr):
-                continue
-            if who == BOTH:
-                report.compare(f"{title}: as OpenColorIO", ours, theirs.astype(float), FLOAT32)
-            said = "is unknown and ignored" in done.stderr
-            report.check(f"{title}: a line names a keyword that is ignored", said == (
-                "keyword" in what or what.startswith("LUT_IN")), done.stderr)
-            kind = FFMPEG_FILES.get((file, what))
-            if has_ffmpeg and kind:
-                shown = of_ffmpeg(path, kind)
-                if report.check(f"{title}: ffmpeg reads it", shown is not None):
-                    report.compare(f"{title}: as ffmpeg", ours, shown.astype(float), FFMPEG)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+    elif kind:
+        shown = of_ffmpeg(path, kind)
+        if report.check(f"{title}: ffmpeg reads it", shown is not None):
+            report.compare(f"{title}: as ffmpeg", ours, shown.astype(float), FFMPEG)

@@ -1,32 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """`tonewright bake --for HOST`: every application's file has the right numbers in the right places; `verify --lut`.
 
-    python3 tests/parity/test_luts.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/test_luts.py --tonewright build/release/bin/tonewright
 
 Each file is read by another program than wrote it (OpenColorIO, OpenImageIO, NumPy for raw floats) and compared, node by
 node, with `tonewright eval` of the light that the node stands for; what light that is comes from the formulas of the
-encodings' makers, written down here once more. The last line is `N passed, M failed`.
+encodings' makers, written down here once more.
 """
 
-import argparse
 import json
 import re
 import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
+import pytest
+from lut_encodings import acescct_decode, davinci_decode, srgb_decode, unity_logc_decode
+from lut_encodings import logc3_decode as logc3
+from pictures import evaluate, log2_encode, need_program, pq_light, read_rgb, run, share_of
 
-sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, evaluate, log2_encode, need_program, pq_light, read_rgb, run, share_of, skip  # noqa: E402
-from lut_encodings import acescct_decode, davinci_decode, srgb_decode, unity_logc_decode  # noqa: E402
-from lut_encodings import logc3_decode as logc3  # noqa: E402
-
-try:
-    import PyOpenColorIO as ocio
-except ImportError:
-    skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
+ocio = pytest.importorskip("PyOpenColorIO", reason="PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
+need_program("oiiotool", "openimageio-tools")
 
 # A view whose picture of every color is another one, so that no axis can be taken for another.
 OPERATOR = ("agx_sobotka", "--look", "punchy")
@@ -149,14 +143,21 @@ def check_chains(report, command, host, folder):
                    evaluate(command, colors[::40], "agx_blender"), 1e-5)
 
 
-def check_formats(report, command, folder):
+def test_applications(report, command, scratch):
+    hosts = json.loads(run(command, "list", "--hosts", "--json"))
+    report.check("hosts", len(hosts) >= 18, len(hosts))
+    for host in share_of(hosts, 3):
+        check_host(report, command, host, scratch)
+
+
+def test_formats(report, command, scratch):
     """Options that no application has by default."""
     codes = nodes_of(17)
     truth = expected_of(command, codes, "acescct", "srgb")
-    path = folder / "x.raw"
+    path = scratch / "x.raw"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "raw", "--size", 17, "--3d", "-o", path)
     report.compare("raw: float32, red fastest", np.fromfile(path, "<f4").reshape(-1, 3), truth, EXACT)
-    path = folder / "x.csp"
+    path = scratch / "x.csp"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "csp", "--size", 17, "-o", path)
     # Its readers resample the prelut to 65536 equal steps of light: 3.4e-3 up to 222.9, where steps at black are some
     # stops. From mid gray on they are less than a fiftieth of a stop.
@@ -164,14 +165,14 @@ def check_formats(report, command, folder):
     shown, bright = through_ocio(path, light), (light >= 0.18).all(axis=1)
     report.compare("csp: scene-linear in, from mid gray on", shown[bright], truth[bright], 2e-5)
     report.compare("csp: all light", shown, truth, 2e-3)
-    path = folder / "logc3.csp"  # OpenColorIO keeps tables by their files' names
+    path = scratch / "logc3.csp"  # OpenColorIO keeps tables by their files' names
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "csp", "--size", 17, "--input-encoding", "logc3",
         "-o", path)
     light = logc3(codes)
     shown, bright = through_ocio(path, light), (light >= 0.18).all(axis=1)
     report.compare("csp: LogC3, from mid gray on", shown[bright],
                    expected_of(command, codes[bright], "logc3", "srgb"), 2e-5)
-    path = folder / "shaper.cube"
+    path = scratch / "shaper.cube"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "resolve_cube", "--size", 17, "--input-encoding",
         "logc3", "-o", path)
     shown = through_ocio(path, light)
@@ -183,47 +184,47 @@ def check_formats(report, command, folder):
     error = np.abs(through_ocio(path, light) - evaluate(command, light, *OPERATOR, "--input", "lin_awg3")).max()
     stated = float(re.search(r"tetrahedral.* max ([-0-9.e]+),", path.read_text(errors="replace")[:4000]).group(1))
     report.check(f"resolve_cube: error {error:.2g}, stated {stated:.2g}", error <= stated, (error, stated))
-    path = folder / "x.ctf"
+    path = scratch / "x.ctf"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "ctf", "--size", 17, "-o", path)
     report.compare("ctf", through_ocio(path, codes), truth, READ)
-    path = folder / "linear.cube"
+    path = scratch / "linear.cube"
     run(command, "bake", "gt7", "--3d", "--display", "linear", "--input-encoding", "unity_logc", "--nodes", "fitted",
         "--size", 17, "-o", path)
     lowest = through_ocio(path, codes).min()
     wanted = evaluate(command, unity_logc_decode(codes), "gt7", "--display", "linear").min()
     report.check(f"fitted nodes keep what is below 0 in linear output: {lowest:.2g} of {wanted:.2g}",
                  wanted - 1e-6 <= lowest <= wanted / 2 < 0, (lowest, wanted))
-    path = folder / "x.exr"
+    path = scratch / "x.exr"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "strip", "--size", 16, "--depth", 32, "-o", path)
     truth_16 = expected_of(command, nodes_of(16), "acescct", "srgb")
-    report.compare("strip: float", nodes_in_picture(path, "strip", 16, folder), truth_16, EXACT)
+    report.compare("strip: float", nodes_in_picture(path, "strip", 16, scratch), truth_16, EXACT)
     # 8 bits would be coarser than a code of 10 bits: who wants them says so.
     for layout in ("strip", "strip_up", "hald"):
-        path = folder / f"default_{layout}.png"
+        path = scratch / f"default_{layout}.png"
         run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", layout, "--size", 16, "-o", path)
-        report.compare(f"{layout}: 16 bits by default", nodes_in_picture(path, layout, 16, folder), truth_16,
+        report.compare(f"{layout}: 16 bits by default", nodes_in_picture(path, layout, 16, scratch), truth_16,
                        0.5 / 65535 + EXACT)
     # A saturated code through the file, whichever way up it stands: `eval --lut` knows from the file.
     for layout, suffix in (("strip", "png"), ("strip_up", "png"), ("strip_up", "tif"), ("strip_up", "exr")):
-        path = folder / f"way_up_{layout}.{suffix}"
+        path = scratch / f"way_up_{layout}.{suffix}"
         depth = 32 if suffix == "exr" else 16
         run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", layout, "--size", 16, "--depth", depth, "-o", path)
         got = [float(v) for v in run(command, "eval", "--lut", path, "--input-encoding", "none", stdin="0.8 0.2 0.4\n").split()]
         report.compare(f"eval --lut of {layout} in .{suffix}", np.array([got]), truth_16[[12 + 16 * 3 + 256 * 6]], 0.5 / 65535 + EXACT)
     for bits in (10, 12, 16):
-        path = folder / f"x{bits}.3dl"
+        path = scratch / f"x{bits}.3dl"
         run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "3dl", "--size", 17, "--depth", bits, "-o", path)
         report.compare(f"3dl: {bits} bits", through_ocio(path, codes), truth, 0.5 / (2 ** bits - 1) + READ)
 
 
-def check_fit(report, command, folder):
+def test_fit(report, command, scratch):
     """A fitted cube is nearer between its nodes, by OpenColorIO's interpolation of colors it was not fitted to; and
     --max-error takes the smallest size that keeps to it on photographs."""
     codes = np.random.default_rng(8).uniform(0, 1, (20000, 3)).astype(np.float32).astype(float)
     truth = expected_of(command, codes, "unity_logc", "linear")
     means = {}
     for nodes in ("sampled", "fitted", "auto"):
-        path = folder / f"{nodes}.cube"
+        path = scratch / f"{nodes}.cube"
         run(command, "bake", *OPERATOR, "--for", "unity", "--nodes", nodes, "-o", path)
         means[nodes] = np.abs(through_ocio(path, codes) - truth).max(axis=1).mean()
     # A fifth of the colors that `auto` is fitted to are no photographs', so it gains elsewhere, too.
@@ -241,7 +242,7 @@ def check_fit(report, command, folder):
     # Another sample of the same histogram has another percentile: 20,000 colors, twenty of them beyond it.
     sampling = 1.3
     for wanted in (0.02, 0.002):
-        path = folder / f"{wanted}.cube"
+        path = scratch / f"{wanted}.cube"
         run(command, "bake", "agx_sobotka", "--3d", "--input-encoding", "log2", "--max-error", wanted, "-o", path)
         lines = path.read_text().splitlines()
         sizes.append(int(next(line for line in lines if line.startswith("LUT_3D_SIZE")).split()[1]))
@@ -249,7 +250,7 @@ def check_fit(report, command, folder):
         report.check(f"--max-error {wanted} takes {sizes[-1]} points: {error:.2g} on photographs", error <= wanted * sampling, error)
     report.check("a smaller --max-error takes more points", sizes[0] == 17 < sizes[1], sizes)
     smaller = {25: 17, 33: 25, 49: 33, 65: 49}[sizes[1]]
-    path = folder / "smaller.cube"
+    path = scratch / "smaller.cube"
     run(command, "bake", "agx_sobotka", "--3d", "--input-encoding", "log2", "--size", smaller, "-o", path)
     error = error_of(path)
     report.check(f"{smaller} points are too few for 0.002: {error:.2g}", error > 0.002 / sampling, error)
@@ -273,7 +274,7 @@ def photograph_colors(count):
     return smallest[:, None] + (largest - smallest)[:, None] * np.clip(2 - apart, 0, 1)
 
 
-def check_clipping(report, command, folder):
+def test_clipping(report, command, scratch):
     """`bake` says which stops an encoding clips, of what the operator would show: by eval, on grays."""
     ends = [(name, 0, float(ENCODINGS[name][0](np.array(1.0))))
             for name in ("acescct", "logc3", "davinci", "unity_logc", "srgb", "pq")]
@@ -281,7 +282,7 @@ def check_clipping(report, command, folder):
     for encoding, low, high in ends:
         # Per channel and of Rec.709: a saturated color clips as a gray does.
         done = subprocess.run([command, "bake", "hable", "--3d", "--size", "17", "--nodes", "sampled", "--input", "lin_rec709",
-                               "--input-encoding", encoding, "-o", folder / "clip.cube"], capture_output=True, text=True,
+                               "--input-encoding", encoding, "-o", scratch / "clip.cube"], capture_output=True, text=True,
                               check=True)
         above = re.search(r"above \+?([-.0-9]+) stops from 0.18, (?:up to \+([.0-9]+)|without end), by up to ([-.0-9e]+)", done.stderr)
         below = re.search(r"below \+?([-.0-9]+) stops(?: from 0.18)?, down to (?:([-+.0-9]+)|black), by up to ([-.0-9e]+)", done.stderr)
@@ -303,19 +304,19 @@ def check_clipping(report, command, folder):
             report.check(f"clipping, {encoding}: {side} {wanted[0]:.2f} to {wanted[1]:.2f}, {wanted[2]:.2g}",
                          abs(found[0] - wanted[0]) < 0.006 and abs(found[1] - wanted[1]) < 1 / 16 + 0.006
                          and wanted[2] * 0.98 <= found[2] <= wanted[2] * 1.1, done.stderr)
-            text = (folder / "clip.cube").read_text()
+            text = (scratch / "clip.cube").read_text()
             report.check(f"clipping, {encoding}: the file says so, too", f"{side} {said[1] if side == 'below' else '+' + said[1]} "
                          "stops" in text[:2000] if said else False, text[:1500])
 
 
-def check_match(report, command, folder):
+def test_match(report, command, scratch):
     """`verify --lut` tells what a file is, by what it does; also of a file whose text says nothing of it."""
     for op, arguments, expected in (
             ("agx_sobotka", ["--3d", "--input-encoding", "log2"], ("log2:-10:6.5", "lin_rec709", "srgb")),
             ("hable", ["--3d", "--input-encoding", "slog3", "--display", "rec1886"], ("slog3", "lin_sgamut3", "rec1886")),
             ("khronos_neutral", ["--for", "unity"], ("unity_logc", "lin_rec709", "linear")),
             ("reinhard", ["--format", "csp"], ("scene-linear", "lin_ap1", "srgb"))):
-        path = folder / f"{op}.{'csp' if 'csp' in arguments else 'cube'}"
+        path = scratch / f"{op}.{'csp' if 'csp' in arguments else 'cube'}"
         run(command, "bake", op, "--nodes", "sampled", *arguments, "-o", path)
         lines = path.read_text().splitlines()
         path.write_text("\n".join(line for line in lines if not line.startswith(("#", "TITLE"))) + "\n")
@@ -327,7 +328,7 @@ def check_match(report, command, folder):
                      found[:2])
         report.check("verify --lut: the nearest come first", [m["mean"] for m in found] == sorted(m["mean"] for m in found)
                      and best["mean"] < 1e-2 < found[-1]["mean"], found)
-    broken = folder / "broken.cube"
+    broken = scratch / "broken.cube"
     for text in ("", "LUT_3D_SIZE 2\n0 0 0\n", "LUT_3D_SIZE 2\n" + "0 0 x\n" * 8, "LUT_3D_SIZE 100000\n0 0 0\n"):
         broken.write_text(text)
         done = subprocess.run([command, "verify", "--lut", broken], capture_output=True, text=True, check=False)
@@ -335,7 +336,7 @@ def check_match(report, command, folder):
                      and "broken.cube" in done.stderr, done.stderr)
 
 
-def check_errors(report, command, folder):
+def test_errors(report, command, scratch):
     """One line that names what is wrong, exit status 2, and no file."""
     for arguments, words in ((["--for", "reslove"], "--for is reslove; did you mean resolve?"),
                              (["--format", "3dl", "--depth", "8"], "depth is 8; expected 12, 10 or 16 for 3dl"),
@@ -361,32 +362,9 @@ def check_errors(report, command, folder):
         extension = {"hald": "png", "strip": "png", "resolve_cube": "cube"}.get(form, form)
         if "unreal" in arguments:
             extension = "exr" if "none.exr" in words else "png"
-        path = folder / f"none.{extension}"
+        path = scratch / f"none.{extension}"
         done = subprocess.run([command, "bake", "hable", *arguments, "-o", path], capture_output=True, text=True,
                               check=False)
         report.check(f"bake hable {' '.join(arguments)}: {words}",
                      done.returncode == 2 and done.stderr.count("\n") == 1 and not path.exists()
                      and all(word in done.stderr for word in words.split("; ")), done.stderr)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    need_program("oiiotool", "openimageio-tools")
-    report = Report()
-    hosts = json.loads(run(command, "list", "--hosts", "--json"))
-    report.check("hosts", len(hosts) >= 18, len(hosts))
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        for host in share_of(hosts, 3):
-            check_host(report, command, host, Path(name))
-        check_formats(report, command, Path(name))
-        check_fit(report, command, Path(name))
-        check_clipping(report, command, Path(name))
-        check_match(report, command, Path(name))
-        check_errors(report, command, Path(name))
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

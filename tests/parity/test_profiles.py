@@ -1,32 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """The profiles of the OpenColorIO config: one config for every OpenColorIO.
 
-    python3 tests/parity/test_profiles.py ocio_config
+    python3 -m pytest tests/parity/test_profiles.py
 
 Takes the files that the PyOpenColorIO of this Python reads: with 2.1 config.ocio and config-2.0.ocio, with 2.5
 config-2.5.ocio too. Each must load and validate without a line in the log; names must be the same in all; and numbers
-must be probe.csv's. What config-2.5.ocio adds is looked at as YAML. The last line is `N passed, M failed`.
+must be probe.csv's. What config-2.5.ocio adds is looked at as YAML.
 """
 
-import argparse
 import contextlib
 import re
-import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "clients"))
-sys.path.insert(0, str(Path(__file__).parents[2] / "python_check"))
+import check_config
+import pytest
+from pictures import PROJECT
 
-from pictures import Report, skip  # noqa: E402
-
-try:
-    import PyOpenColorIO as ocio
-except ImportError as error:
-    skip(str(error))
-
-import check_config  # noqa: E402
+ocio = pytest.importorskip("PyOpenColorIO")
 
 FILES = {(2, 1): "config.ocio", (2, 0): "config-2.0.ocio", (2, 5): "config-2.5.ocio"}
+FOLDER = PROJECT / "ocio_config"
 VERSION = tuple(int(n) for n in ocio.GetVersion().split(".")[:2])
 # OpenColorIO's ACES 2.0 is float32: 2.3e-5 from the double reference on random colors (tests/parity/test_builtins.py),
 # where one channel is near black and another bright; Rec.1886 and the pure powers are steeper there than sRGB.
@@ -69,9 +61,10 @@ def names(config):
             "roles": dict(zip(config.getRoleNames(), (config.getColorSpace(r).getName() for r in config.getRoleNames())))}
 
 
-def check_numbers(report, name, config, probes, folder):
+def check_numbers(report, name, config):
     """Every view on every display, as applications compute it and without optimization, against probe.csv."""
-    config.setWorkingDir(str(folder))
+    config.setWorkingDir(str(FOLDER))
+    probes = check_config.read_probes(FOLDER / "probe.csv")
     failed, largest = [], 0.0
     for key, colors in probes.items():
         line, ok = check_config.compare(ocio, config, key, colors)
@@ -129,10 +122,10 @@ def check_same_ids(report, config):
     report.check("and below 0 what docs/config.md says", found == wanted, found)
 
 
-def check_text(report, folder):
+def test_text(report):
     """Where the library cannot read 2.5: what is not in the other files is what 2.5 is for."""
-    old = (folder / "config.ocio").read_text()
-    older = (folder / "config-2.0.ocio").read_text()
+    old = (FOLDER / "config.ocio").read_text()
+    older = (FOLDER / "config-2.0.ocio").read_text()
     report.check("config-2.0.ocio says the same", older == re.sub("^ocio_profile_version: 2.1", "ocio_profile_version: 2",
                                                                  old), "it differs")
     try:
@@ -151,7 +144,7 @@ def check_text(report, folder):
 
     Loader.add_multi_constructor("", tagged)
     a = yaml.load(old, Loader)
-    b = yaml.load((folder / "config-2.5.ocio").read_text(), Loader)
+    b = yaml.load((FOLDER / "config-2.5.ocio").read_text(), Loader)
     report.check("profile 2.5 says its version", str(b.pop("ocio_profile_version")) == "2.5")
     a.pop("ocio_profile_version")
     spaces = {space["name"]: space for part in ("colorspaces", "display_colorspaces") for _, space in b[part]}
@@ -192,45 +185,40 @@ def check_text(report, folder):
     report.check("the rest of profile 2.5 is the same", a == b, [key for key in a if a[key] != b.get(key)])
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path)
-    args = parser.parse_args()
-    report = Report()
-    ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_WARNING)
-    probes = check_config.read_probes(args.folder / "probe.csv")
-    said = {}
+def load(name):
+    return ocio.Config.CreateFromFile(str(FOLDER / name))
+
+
+@pytest.mark.parametrize("version", FILES, ids=FILES.get)
+def test_file(report, version):
+    """It is read and used without a message, or refused by its version."""
+    name = FILES[version]
     print(f"OpenColorIO {ocio.GetVersion()}")
-    for version, name in FILES.items():
-        if version > VERSION:
-            with logged():
-                try:
-                    ocio.Config.CreateFromFile(str(args.folder / name))
-                    refused = ""
-                except ocio.Exception as error:
-                    refused = str(error)
-            report.check(f"{name} is refused by its version", "version" in refused, refused)
-            continue
-        with logged() as lines:
-            config = ocio.Config.CreateFromFile(str(args.folder / name))
-            config.validate()
-        report.check(f"{name} loads and validates without a word", not lines, lines[:3])
-        report.check(f"{name} has its version", (config.getMajorVersion(), config.getMinorVersion()) == version)
-        said[name] = names(config)
-        with logged() as lines:
-            check_numbers(report, name, config, probes, args.folder)
-        report.check(f"{name} is used without a word", not lines, lines[:3])
-        if version == (2, 5):
-            check_ids(report, config)
-            check_same_ids(report, config)
+    if version > VERSION:
+        with logged():
+            try:
+                load(name)
+                refused = ""
+            except ocio.Exception as error:
+                refused = str(error)
+        report.check(f"{name} is refused by its version", "version" in refused, refused)
+        return
+    with logged() as lines:
+        config = load(name)
+        config.validate()
+    report.check(f"{name} loads and validates without a word", not lines, lines[:3])
+    report.check(f"{name} has its version", (config.getMajorVersion(), config.getMinorVersion()) == version)
+    with logged() as lines:
+        check_numbers(report, name, config)
+    report.check(f"{name} is used without a word", not lines, lines[:3])
+    if version == (2, 5):
+        check_ids(report, config)
+        check_same_ids(report, config)
+
+
+def test_names(report):
+    said = {name: names(load(name)) for version, name in FILES.items() if version <= VERSION}
     first = said["config.ocio"]
     differ = [(name, part) for name, others in said.items() for part in first if others[part] != first[part]]
-    report.check("scene light is converted to a display as it is",
-                 said["config.ocio"]["default view transform"] == "Un-tone-mapped")
+    report.check("scene light is converted to a display as it is", first["default view transform"] == "Un-tone-mapped")
     report.check(f"the same names in {', '.join(said)}", not differ and len(said) > 1, differ)
-    check_text(report, args.folder)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -30,12 +30,13 @@ for folder, direct in {
     "verify": ["ocio", "shader"],
     "report": ["verify"],
     "plot": ["engine"],
+    "shader_runs": ["verify"],
     "tasks": ["verify"],  # what the front ends do
-    "cli": ["report", "plot", "tasks"],
+    "cli": ["report", "plot", "tasks", "shader_runs"],
     "cli/pictures": ["cli", "image"],  # the module that the program loads
     "tools": ["cli"],
     "plugin": ["image"],
-    "python": ["tasks", "image"],
+    "python": ["tasks", "shader_runs", "image"],
 }.items():
     BELOW[folder] = sorted(set(direct).union(*(BELOW[d] for d in direct)))
 # Public header -> the folder that it belongs to.
@@ -60,7 +61,7 @@ THIRD_PARTY = {
     "nlohmann": ["cli/json.cpp"],
     "toml++": ["definition/toml_text.cpp"],
     "pybind11": ["python"],
-    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "plot", "tasks", "cli", "cli/pictures", "tools", "plugin", "python"],
+    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "shader_runs", "plot", "tasks", "cli", "cli/pictures", "tools", "plugin", "python"],
 }
 # They have names of their own for the parameters of a request.
 FRONT_ENDS = {"cli", "cli/pictures", "tools", "python", "plugin", "definition"}

@@ -19,7 +19,7 @@ FOLDERS = {
     "python": "a module that Python loads: tests/cli/test_python.py",
     "report": "pages: tests/report looks at them in a browser",
     "operators": "formulas: tests/laws, tests/data/operators.csv and python_check test each by its name",
-    "verify/shader_runs": "drivers that may be missing: tests/unit/verify/shader_runs_test.cpp, tests/shader",
+    "shader_runs": "drivers that may be missing: tests/unit/shader_runs/shader_run_test.cpp, tests/shader",
 }
 # Files, in the same way.
 FILES = {

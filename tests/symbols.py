@@ -2,7 +2,7 @@
 """Folders of src/ depend on each other in one direction by linkage, too: reads the compiled symbols.
 
 An object file may leave a symbol of Tonewright undefined only if an object of its own folder or of a
-folder below it (layers.py) defines the symbol.
+folder below it (layers.py) defines the symbol. No library that is installed starts a process.
 
 Usage: symbols.py BUILD
 """
@@ -14,6 +14,10 @@ import sys
 
 from layers import BELOW, folder_of
 
+# They start processes.
+STARTERS = {"fork", "vfork", "clone", "posix_spawn", "posix_spawnp", "execl", "execle", "execlp", "execv", "execve", "execvp",
+            "execvpe", "fexecve", "popen", "system"}
+INSTALLED = {f"tonewright_{name}.dir" for name in ("core", "ocio", "image")}
 NAMESPACE = "10tonewright"  # as it is mangled
 
 
@@ -26,22 +30,24 @@ def main(build: pathlib.Path) -> int:
     if missing:
         print(f"symbols: {missing[0]} is not built")
         return 1
-    defined, wanted = {}, []
+    defined, wanted, starters = {}, [], []
     listing = subprocess.run(["nm", "--print-file-name", *map(str, objects)], capture_output=True, text=True,
                              check=True).stdout
     for line in listing.splitlines():
         name, _, rest = line.partition(":")
         kind, symbol = rest.split()[-2:]
+        path = pathlib.Path(name)
+        if kind == "U" and symbol in STARTERS and INSTALLED & set(path.parts):
+            starters.append(f"{path}: a library calls {symbol}()")
         if NAMESPACE not in symbol:
             continue
-        path = pathlib.Path(name)
         library = next(i for i, part in enumerate(path.parts) if part.endswith(".dir"))
         folder = folder_of(path.parts[library + 1:])
         if kind == "U":
             wanted.append((path.name, folder, symbol))
         else:
             defined.setdefault(symbol, set()).add(folder)
-    failures = []
+    failures = starters
     for name, folder, symbol in wanted:
         homes = defined.get(symbol, set())
         if not homes & {folder, *BELOW[folder]}:

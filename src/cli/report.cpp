@@ -354,8 +354,8 @@ class PageContents {
         verify_options.random_count = 10000;
         verify_options.only_best_target = true;
         verify_options.cache_folder = user_cache_folder();
-        verify_options.shaders = {"glsl-es"};
-        for (const ParityRow& row : verify(verify_options).rows)
+        add_shader_runs(verify_options, {"glsl-es"});
+        for (const ParityRow& row : verify(verify_options))
             rows.push_back(to_json(row));
         return rows;
     }

@@ -18,6 +18,7 @@
 #include "cli/options.h"
 #include "cli/picture_commands.h"
 #include "cli/suggestions.h"
+#include "shader_runs/shader_run.h"
 #include "tonewright/lint.h"
 #include "tonewright/lut_match.h"
 #include "tonewright/ocio.h"
@@ -28,6 +29,7 @@ namespace {
 struct Options {
     VerifyOptions verify;
     std::vector<std::string> operators;
+    std::vector<std::string> shaders;
     std::string picture;
     std::string lut;
     bool json = false;
@@ -184,13 +186,14 @@ int run_verify(Options& options) {
         fmt::print("{}", format_row(row));
         std::fflush(stdout);
     };
-    const VerifyResult result = [&] {
+    std::vector<NotExecuted> not_executed;
+    const std::vector<ParityRow> rows = [&] {
         // Rows on the terminal show the progress.
         const bool has_rows = !options.json && !options.summary && ::isatty(STDOUT_FILENO) != 0;
         const ElapsedLine line("verify", has_rows ? -1 : STDERR_FILENO);
+        not_executed = add_shader_runs(verify_options, options.shaders);
         return verify(verify_options, print);
     }();
-    const std::vector<ParityRow>& rows = result.rows;
     std::size_t failed = 0;
     for (const ParityRow& row : rows)
         failed += row.is_ok ? 0 : 1;
@@ -199,18 +202,18 @@ int run_verify(Options& options) {
         Json all = Json::array();
         for (const ParityRow& row : rows)
             all.push_back(to_json(row));
-        Json not_executed = Json::array();
-        for (const NotExecuted& n : result.not_executed)
-            not_executed.push_back({{"name", n.name}, {"reason", n.reason}});
+        Json without_run = Json::array();
+        for (const NotExecuted& n : not_executed)
+            without_run.push_back({{"name", n.name}, {"reason", n.reason}});
         Json object;
         if (is_of_config) object.add("lint", lint);
         object.add("rows", all);
-        object.add("not_executed", not_executed);
+        object.add("not_executed", without_run);
         fmt::print("{}\n", object.dump(2));
     } else if (!rows.empty() || !is_of_config) {
         fmt::print("{} comparisons, {} beyond their bound\n", rows.size(), failed);
-        if (!result.not_executed.empty() && !options.summary)
-            fmt::print("{}", format_not_executed(result.not_executed));
+        if (!not_executed.empty() && !options.summary)
+            fmt::print("{}", format_not_executed(not_executed));
     }
     if (failed) exit_code = kCheckFailed;
     return exit_code;
@@ -284,7 +287,7 @@ void add_verify(CommandLine& program) {
         .group(how);
     command
         .add(
-            "--shaders", options->verify.shaders,
+            "--shaders", options->shaders,
             "run shaders in these languages: glsl, glsl-es, wgsl, hlsl, dctl, c, or none (default: "
             "all that this machine can run)")
         .one_value_each()

@@ -33,6 +33,7 @@
 #include "lut/lut_warnings.h"
 #include "ocio/lut_chain.h"
 #include "pipeline/stand_ins.h"
+#include "shader_runs/shader_run.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/image_io.h"
@@ -705,7 +706,6 @@ py::list verify_operators(const std::vector<std::string>& operators,
     options.input = input;
     options.config = config;
     options.with_gpu = with_gpu;
-    options.shaders = shaders;
     if (is_quick) {
         options.gamut_grid_size = 9;
         options.random_count = 10000;
@@ -714,8 +714,10 @@ py::list verify_operators(const std::vector<std::string>& operators,
     std::vector<ParityRow> rows;
     {
         const py::gil_scoped_release release;
-        rows = with_memory_for(config.empty() ? "verify" : config,
-                               [&] { return verify(options).rows; });
+        rows = with_memory_for(config.empty() ? "verify" : config, [&] {
+            add_shader_runs(options, shaders);
+            return verify(options);
+        });
     }
     return describe_all(rows);
 }

@@ -24,7 +24,6 @@
 #include "tonewright/shader.h"
 #include "verify/backends.h"
 #include "verify/private_folder.h"
-#include "verify/shader_runs/shader_run.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -375,24 +374,15 @@ std::vector<ConfigOptions::CustomView> views_of_operators(const std::vector<View
     return requested;
 }
 
-ShaderRuns choose_shaders(const VerifyOptions& options) {
-    // Tonewright's shaders do not read a config.
-    if (options.with_gpu && !checks_views_of_config(options))
-        return make_shader_runs(options.shaders);
-    (void)languages_to_run(options.shaders);  // wrong names are errors without a run, too
-    return {};
-}
-
 /// The comparison of all backends of a view with the reference.
 class Verification {
   public:
     Verification(const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row)
         : options_(options), on_row_(on_row), is_of_config_(checks_views_of_config(options)) {}
 
-    VerifyResult run() {
+    std::vector<ParityRow> run() {
         if (!options_.config.empty()) config_ = read_config(path_of_config(options_.config));
         const std::vector<View> views = choose_views(options_, config_);
-        shaders_ = choose_shaders(options_);
         samples_ = choose_samples(options_);
         every_20th_ = every_nth(samples_, 20);
         shown_.resize(samples_.rgb.size());
@@ -403,7 +393,7 @@ class Verification {
         }
         for (const View& view : views)
             add_view(view);
-        return {std::move(rows_), std::move(shaders_.not_executed)};
+        return std::move(rows_);
     }
 
   private:
@@ -442,7 +432,7 @@ class Verification {
                 rows_.back().note = "a model of Blender's viewport";
         }
         std::optional<ShaderErrors> errors;
-        for (const ShaderRuns::Of& shader : shaders_.runs)
+        for (const LanguageRun& shader : options_.shaders)
             add_shader(subject, comparison, shader, errors);
     }
 
@@ -529,7 +519,7 @@ class Verification {
 
     /// @param errors  of the shaders of the view; the first call measures them
     void add_shader(const Subject& subject, const Comparison& comparison,
-                    const ShaderRuns::Of& shader_run, std::optional<ShaderErrors>& errors) {
+                    const LanguageRun& shader_run, std::optional<ShaderErrors>& errors) {
         const ShaderLanguageInfo& language = shader_run.language;
         const View& view = subject.view;
         if (!errors) errors = measure_shader({.view = view});
@@ -560,7 +550,6 @@ class Verification {
     const std::function<void(const ParityRow&)>& on_row_;
     bool is_of_config_;
     OCIO::ConstConfigRcPtr config_;
-    ShaderRuns shaders_;
     SampleSet samples_;
     SampleSet every_20th_;
     std::vector<float> shown_;
@@ -569,8 +558,8 @@ class Verification {
 
 }  // namespace
 
-VerifyResult verify(const VerifyOptions& options,
-                    const std::function<void(const ParityRow&)>& on_row) {
+std::vector<ParityRow> verify(const VerifyOptions& options,
+                              const std::function<void(const ParityRow&)>& on_row) {
     try {
         return Verification(options, on_row).run();
     } catch (const OCIO::Exception& e) {
@@ -593,20 +582,6 @@ std::string format_row(const ParityRow& row) {
         row.display, row.backend, row.max, row.p999, row.mean, row.max_all,
         row.max_all <= row.bound ? "-" : fmt::format("{:.1e}", row.max_beyond_rounding), row.bound,
         row.is_ok ? "ok" : "FAILED", row.note.empty() ? "" : ", " + row.note);
-}
-
-std::string format_not_executed(const std::vector<NotExecuted>& all) {
-    std::string text = "written, not executed: ";
-    for (auto first = all.begin(), last = first; first != all.end(); first = last) {
-        last = std::find_if(first, all.end(), [&](const NotExecuted& other) {
-            return other.reason != first->reason;
-        });
-        if (first != all.begin()) text += "; ";
-        for (auto one = first; one != last; ++one)
-            text += (one == first ? "" : ", ") + one->name;
-        text += " (" + first->reason + ")";
-    }
-    return text + "\n";
 }
 
 TONEWRIGHT_NAMESPACE_END

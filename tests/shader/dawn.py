@@ -8,7 +8,7 @@ import subprocess
 
 from executed import npm_modules, skip
 
-RUNNER = pathlib.Path(__file__).parent.parent.parent / "src/verify/shader_runs/run_on_dawn.mjs"  # of `verify`
+RUNNER = pathlib.Path(__file__).parent.parent.parent / "src/shader_runs/run_on_dawn.mjs"  # of `verify`
 SWIFTSHADER = pathlib.Path("/usr/lib/chromium/vk_swiftshader_icd.json")
 
 

@@ -3,13 +3,38 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "tonewright/registry.h"
+#include "tonewright/shader.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Compiles and runs shader functions of one language on this machine.
+class TONEWRIGHT_API ShaderRun {
+  public:
+    ShaderRun() = default;
+    ShaderRun(const ShaderRun&) = delete;
+    ShaderRun& operator=(const ShaderRun&) = delete;
+    virtual ~ShaderRun() = default;
+
+    /// The compiler or driver.
+    [[nodiscard]] virtual std::string by() const = 0;
+
+    /// Interleaved RGB.
+    /// @param shader  its function has no arguments but the color
+    /// @throws Error  the text does not compile, or the driver fails
+    virtual void run_rgb(const Shader& shader, const float* in, float* out,
+                         std::size_t pixel_count) = 0;
+};
+
+struct LanguageRun {
+    ShaderLanguageInfo language;
+    std::shared_ptr<ShaderRun> run;
+};
 
 /// Backends and samples of a comparison with the reference.
 struct VerifyOptions {
@@ -24,11 +49,11 @@ struct VerifyOptions {
     int gamut_grid_size = 33;
     /// Random colors; colors near black and with negative channels are in proportion.
     std::size_t random_count = 100000;
-    /// Includes OpenColorIO's GPU path, and shaders.
+    /// Includes OpenColorIO's GPU path.
     bool with_gpu = true;
-    /// Languages of the shaders to run, as shader_languages() names them. Empty or `all`: those
-    /// that this machine can run. `none`: no shaders.
-    std::vector<std::string> shaders;
+    /// Compares shaders in these languages. The library starts no compiler: applications bring
+    /// their runs. Empty: no shaders.
+    std::vector<LanguageRun> shaders;
     /// Measures the SIMD engine only with the best instruction set of this processor.
     bool only_best_target = false;
     /// Scene-linear RGB pixels to add to the sample set, in the input space.
@@ -67,30 +92,12 @@ struct ParityRow {
     std::string note;  // why a backend is missing, or the worst color of a failure
 };
 
-/// A language or an application whose shaders did not run.
-struct NotExecuted {
-    std::string name;
-    std::string reason;
-};
-
-struct VerifyResult {
-    std::vector<ParityRow> rows;
-    /// Requested languages that did not run; if all were requested, also those that cannot run.
-    std::vector<NotExecuted> not_executed;
-};
-
-/// Shaders run on OpenGL and OpenGL ES through EGL, with the C compiler `$CC` (else cc, gcc,
-/// clang), on OpenCL (DCTL), and on Dawn for Node.js (WGSL, HLSL), if TONEWRIGHT_NODE_MODULES names
-/// a folder with the packages webgpu and naga-wasm.
-/// @throws Error  a local operator; unknown displays, spaces, languages; FileError for the config
-/// folder
-[[nodiscard]] TONEWRIGHT_API VerifyResult
-verify(const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
+/// @throws Error  a local operator; unknown displays and spaces; FileError for the config folder
+[[nodiscard]] TONEWRIGHT_API std::vector<ParityRow> verify(
+    const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
 
 /// Lines of a table for the terminal: the heading, and a row.
 [[nodiscard]] TONEWRIGHT_API std::string parity_heading();
 [[nodiscard]] TONEWRIGHT_API std::string format_row(const ParityRow& row);
-/// One line with the names and their reasons.
-[[nodiscard]] TONEWRIGHT_API std::string format_not_executed(const std::vector<NotExecuted>& all);
 
 TONEWRIGHT_NAMESPACE_END

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "shader_runs/child_process.h"
+#include "shader_runs/shader_run.h"
 #include "tonewright/error.h"
 #include "verify/private_folder.h"
-#include "verify/shader_runs/child_process.h"
-#include "verify/shader_runs/shader_run.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

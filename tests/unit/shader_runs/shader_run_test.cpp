@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "verify/shader_runs/shader_run.h"
+#include "shader_runs/shader_run.h"
 
 #include <gtest/gtest.h>
 
@@ -36,9 +36,10 @@ double error_of(ShaderRun& run, const Shader& shader, const View& view) {
 }
 
 TEST_P(ShaderRunOf, RunsTheTextThatItIsGiven) {
-    ShaderRuns made = make_shader_runs({GetParam()});
-    if (made.runs.empty()) GTEST_SKIP() << made.not_executed.at(0).reason;
-    ShaderRun& run = *made.runs[0].run;
+    VerifyOptions options;
+    const std::vector<NotExecuted> not_executed = add_shader_runs(options, {GetParam()});
+    if (options.shaders.empty()) GTEST_SKIP() << not_executed.at(0).reason;
+    ShaderRun& run = *options.shaders[0].run;
     const View view = make_view(resolve_operator("hable"), "lin_rec709", 0, "srgb");
     const Shader shader =
         write_shader({.view = view, .language = find_shader_language(GetParam()).language});
@@ -56,10 +57,21 @@ TEST_P(ShaderRunOf, RunsTheTextThatItIsGiven) {
 }
 
 TEST(ShaderRuns, NamesAreChecked) {
-    EXPECT_TRUE(make_shader_runs({"none"}).runs.empty());
-    EXPECT_TRUE(make_shader_runs({"none"}).not_executed.empty());
-    EXPECT_THROW((void)make_shader_runs({"msl"}), Error);
-    EXPECT_THROW((void)make_shader_runs({"none", "c"}), Error);
+    VerifyOptions options;
+    EXPECT_TRUE(add_shader_runs(options, {"none"}).empty());
+    EXPECT_TRUE(options.shaders.empty());
+    EXPECT_THROW(add_shader_runs(options, {"msl"}), Error);
+    EXPECT_THROW(add_shader_runs(options, {"none", "c"}), Error);
+    options.with_gpu = false;
+    EXPECT_TRUE(add_shader_runs(options, {"c"}).empty());
+    EXPECT_TRUE(options.shaders.empty()) << "nothing runs";
+    EXPECT_THROW(add_shader_runs(options, {"msl"}), Error) << "the names are checked";
+}
+
+TEST(NotExecuted, LanguagesOfOneReasonStandTogether) {
+    EXPECT_EQ(format_not_executed(
+                  {{"wgsl", "no Node.js"}, {"hlsl", "no Node.js"}, {"dctl", "no OpenCL"}}),
+              "written, not executed: wgsl, hlsl (no Node.js); dctl (no OpenCL)\n");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "verify/shader_runs/child_process.h"
+#include "shader_runs/child_process.h"
 
 #include <fcntl.h>
 #include <spawn.h>

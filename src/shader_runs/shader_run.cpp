@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "verify/shader_runs/shader_run.h"
+#include "shader_runs/shader_run.h"
 
 #include <algorithm>
 #include <array>
@@ -57,16 +57,7 @@ std::unique_ptr<ShaderRun> try_run(const Runner& runner) {
     return run;
 }
 
-}  // namespace
-
-std::unique_ptr<ShaderRun> run_on_opengl() {
-    return std::make_unique<OpenGlRun>(GlslDialect::desktop);
-}
-
-std::unique_ptr<ShaderRun> run_on_opengl_es() {
-    return std::make_unique<OpenGlRun>(GlslDialect::es);
-}
-
+/// Ids of the languages that the names choose.
 std::vector<std::string> languages_to_run(const std::vector<std::string>& names) {
     std::vector<std::string> ids(kRunners.size());
     std::transform(kRunners.begin(), kRunners.end(), ids.begin(),
@@ -88,30 +79,57 @@ std::vector<std::string> languages_to_run(const std::vector<std::string>& names)
     return is_all ? ids : chosen;
 }
 
-ShaderRuns make_shader_runs(const std::vector<std::string>& names) {
-    ShaderRuns made;
+}  // namespace
+
+std::unique_ptr<ShaderRun> run_on_opengl() {
+    return std::make_unique<OpenGlRun>(GlslDialect::desktop);
+}
+
+std::unique_ptr<ShaderRun> run_on_opengl_es() {
+    return std::make_unique<OpenGlRun>(GlslDialect::es);
+}
+
+std::vector<NotExecuted> add_shader_runs(VerifyOptions& options,
+                                         const std::vector<std::string>& names) {
+    std::vector<NotExecuted> not_executed;
     const std::vector<std::string> chosen = languages_to_run(names);
+    // Tonewright's shaders do not read a config.
+    if (!options.with_gpu || (options.operators.empty() && !options.config.empty())) return {};
     for (const Runner& runner : kRunners) {
         const ShaderLanguageInfo& language = find_shader_language(runner.language);
         if (std::find(chosen.begin(), chosen.end(), language.id) == chosen.end()) continue;
         try {
-            made.runs.push_back({language, try_run(runner)});
+            options.shaders.push_back({language, try_run(runner)});
         } catch (const Error& e) {
-            made.not_executed.push_back({language.id, one_line(e.what())});
+            not_executed.push_back({language.id, one_line(e.what())});
         }
     }
     const bool is_all = names.empty() || std::any_of(names.begin(), names.end(), [](const auto& n) {
                             return is_same_name(n, "all");
                         });
-    if (!is_all) return made;
+    if (!is_all) return not_executed;
     for (const ShaderLanguageInfo& language : shader_languages()) {
         if (std::find(chosen.begin(), chosen.end(), language.id) == chosen.end())
-            made.not_executed.push_back({language.id, "nothing can run it here"});
+            not_executed.push_back({language.id, "nothing can run it here"});
     }
     for (const ShaderApplication& application : shader_applications())
-        made.not_executed.push_back(
+        not_executed.push_back(
             {application.id, "verify runs functions, not the files of applications"});
-    return made;
+    return not_executed;
+}
+
+std::string format_not_executed(const std::vector<NotExecuted>& all) {
+    std::string text = "written, not executed: ";
+    for (auto first = all.begin(), last = first; first != all.end(); first = last) {
+        last = std::find_if(first, all.end(), [&](const NotExecuted& other) {
+            return other.reason != first->reason;
+        });
+        if (first != all.begin()) text += "; ";
+        for (auto one = first; one != last; ++one)
+            text += (one == first ? "" : ", ") + one->name;
+        text += " (" + first->reason + ")";
+    }
+    return text + "\n";
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -15,11 +15,11 @@
 #include <system_error>
 
 #include "base/strings.h"
+#include "shader_runs/child_process.h"
+#include "shader_runs/run_on_dawn.h"
+#include "shader_runs/shader_run.h"
 #include "tonewright/error.h"
 #include "verify/private_folder.h"
-#include "verify/shader_runs/child_process.h"
-#include "verify/shader_runs/run_on_dawn.h"
-#include "verify/shader_runs/shader_run.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "base/strings.h"
+#include "shader_runs/shader_run.h"
 #include "tonewright/error.h"
-#include "verify/shader_runs/shader_run.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

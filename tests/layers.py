@@ -54,6 +54,7 @@ THIRD_PARTY = {
     "EGL": ["ocio"],
     "yaml-cpp": ["ocio"],
     "lcms2.h": ["lut"],
+    "expat.h": ["lut/formats/xml.cpp"],
     "GL": ["ocio"],
     "cairo-pdf.h": ["plot/cairo_surface.cpp"],
     "xbyak": ["engine"],

@@ -20,8 +20,8 @@ build=$(realpath "$2")
 toolchain=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$build/prefix"
     -DCMAKE_TOOLCHAIN_FILE="$(realpath "$tree")/tests/platforms/windows.cmake" -DCMAKE_FIND_ROOT_PATH="$build/prefix")
 
-# Debian has neither Highway nor fmt for Windows: the sources of its packages are compiled.
-if [ ! -f "$build/prefix/complete" ]; then
+# Debian has neither Highway nor fmt nor expat for Windows: the sources of its packages are compiled.
+if [ ! -f "$build/prefix/complete-2" ]; then
     mkdir -p "$build"/apt/{lists/partial,archives/partial} "$build/prefix/include"
     : >"$build/apt/status"
     list=/etc/apt/sources.list.d/debian.sources
@@ -30,14 +30,19 @@ if [ ! -f "$build/prefix/complete" ]; then
     apt=(apt-get -qq -o APT::Sandbox::User=root -o Acquire::Retries=3 -o Acquire::Languages=none -o Dir::State="$build/apt"
         -o Dir::State::status="$build/apt/status" -o Dir::Cache="$build/apt" -o Dir::Etc::SourceParts=/dev/null
         -o Dir::Etc::SourceList="$build/apt/${list##*/}")
-    { "${apt[@]}" update && (cd "$build/apt" && "${apt[@]}" source --download-only highway fmtlib); } ||
-        skip "apt-get cannot download the sources of highway and fmtlib"
-    for library in highway fmtlib; do
+    # Without security updates: the sources of upstream are the same, and mirrors drop the others.
+    release=$(. /etc/os-release; echo "${VERSION_CODENAME:-sid}")
+    { "${apt[@]}" update && (cd "$build/apt" && "${apt[@]}" source --download-only -t "$release" highway fmtlib expat); } ||
+        skip "apt-get cannot download the sources of highway, fmtlib and expat"
+    for library in highway fmtlib expat; do
         rm -rf "${build:?}/$library"
         mkdir "$build/$library"
         tar -C "$build/$library" --strip-components=1 -xf "$build"/apt/${library}_*.orig.tar.*
-        cmake -S "$build/$library" -B "$build/$library/build" "${toolchain[@]}" -DBUILD_TESTING=OFF -DHWY_ENABLE_CONTRIB=OFF \
-            -DHWY_ENABLE_EXAMPLES=OFF -DFMT_TEST=OFF -DFMT_DOC=OFF >"$build/log" || { cat "$build/log"; exit 1; }
+        folder=$build/$library
+        [ -f "$folder/CMakeLists.txt" ] || folder=$folder/$library
+        cmake -S "$folder" -B "$build/$library/build" "${toolchain[@]}" -DBUILD_TESTING=OFF -DHWY_ENABLE_CONTRIB=OFF \
+            -DHWY_ENABLE_EXAMPLES=OFF -DFMT_TEST=OFF -DFMT_DOC=OFF -DEXPAT_BUILD_TOOLS=OFF -DEXPAT_BUILD_TESTS=OFF \
+            -DEXPAT_SHARED_LIBS=OFF >"$build/log" || { cat "$build/log"; exit 1; }
         cmake --build "$build/$library/build" --target install >"$build/log" || { cat "$build/log"; exit 1; }
     done
     # Highway 1.0.3 has no file for find_package(); toml++ is headers.
@@ -48,7 +53,7 @@ set_target_properties(hwy::hwy PROPERTIES IMPORTED_LOCATION ${CMAKE_CURRENT_LIST
   INTERFACE_INCLUDE_DIRECTORIES ${CMAKE_CURRENT_LIST_DIR}/../../../include)
 END
     cp -r /usr/include/toml++ "$build/prefix/include/"
-    touch "$build/prefix/complete"
+    touch "$build/prefix/complete-2"
 fi
 
 cmake -S "$tree" -B "$build/core" "${toolchain[@]}" -DBUILD_SHARED_LIBS=OFF -DTONEWRIGHT_BUILD_TESTS=OFF \
@@ -56,6 +61,6 @@ cmake -S "$tree" -B "$build/core" "${toolchain[@]}" -DBUILD_SHARED_LIBS=OFF -DTO
 cmake --build "$build/core" --target tonewright_core
 $compiler -std=c++20 -O1 -I"$tree/src" -I"$tree/src/include" -I"$build/prefix/include" \
     "$tree/tests/platforms/core_files.cpp" "$build/core/src/libtonewright_core.a" \
-    -L"$build/prefix/lib" -lhwy -lfmt -static -o "$build/core_files.exe"
+    -L"$build/prefix/lib" -lhwy -lfmt -lexpat -static -o "$build/core_files.exe"
 export WINEPREFIX=$build/wine WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml='
 compare_core_files "$native" "$wine" "$build/core_files.exe"

@@ -31,12 +31,13 @@ for folder, direct in {
     "report": ["verify"],
     "plot": ["engine"],
     "shader_runs": ["verify"],
-    "tasks": ["verify"],  # what the front ends do
+    "tasks": ["verify"],  # what the command and the Python module do
+    "tasks/pictures": ["tasks", "image"],
     "cli": ["report", "plot", "tasks", "shader_runs"],
-    "cli/pictures": ["cli", "image"],  # the module that the program loads
+    "cli/pictures": ["cli", "tasks/pictures"],  # the module that the program loads
     "tools": ["cli"],
     "plugin": ["image"],
-    "python": ["tasks", "shader_runs", "image"],
+    "python": ["tasks/pictures", "shader_runs"],
 }.items():
     BELOW[folder] = sorted(set(direct).union(*(BELOW[d] for d in direct)))
 # Public header -> the folder that it belongs to.
@@ -50,7 +51,7 @@ PUBLIC = {
 THIRD_PARTY = {
     "hwy": ["engine", "image"],
     "OpenColorIO": ["ocio", "verify"],
-    "OpenImageIO": ["image", "cli/pictures", "plugin", "python"],
+    "OpenImageIO": ["image", "tasks/pictures", "cli/pictures", "plugin", "python"],
     "EGL": ["ocio"],
     "yaml-cpp": ["ocio"],
     "lcms2.h": ["lut"],
@@ -59,10 +60,10 @@ THIRD_PARTY = {
     "cairo-pdf.h": ["plot/cairo_surface.cpp"],
     "xbyak": ["engine"],
     "CLI": ["cli/options.cpp"],  # one file each: they take seconds to compile
-    "nlohmann": ["cli/json.cpp"],
+    "nlohmann": ["tasks/json.cpp"],
     "toml++": ["definition/toml_text.cpp"],
     "pybind11": ["python"],
-    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "shader_runs", "plot", "tasks", "cli", "cli/pictures", "tools", "plugin", "python"],
+    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "shader_runs", "plot", "tasks", "tasks/pictures", "cli", "cli/pictures", "tools", "plugin", "python"],
 }
 # They have names of their own for the parameters of a request.
 FRONT_ENDS = {"cli", "cli/pictures", "tools", "python", "plugin", "definition"}

@@ -2,7 +2,11 @@
 #include "tonewright/error.h"
 
 #include <algorithm>
+#include <new>
 #include <utility>
+
+#include "base/problem.h"
+#include "base/strings.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -85,6 +89,19 @@ Problem within(std::string_view what, Problem problem) {
 Error::Error(Problem problem)
     : std::runtime_error(render(problem)),
       problem_(std::make_shared<const Problem>(std::move(problem))) {}
+
+Problem problem_of(const std::exception& error) {
+    if (const auto* own = dynamic_cast<const Error*>(&error)) return own->problem();
+    if (dynamic_cast<const std::bad_alloc*>(&error))
+        return {.kind = Problem::Kind::memory, .what = "not enough memory"};
+    return {.kind = Problem::Kind::internal, .what = one_line(error.what())};
+}
+
+void throw_problem(const Problem& problem) {
+    if (problem.kind == Problem::Kind::file || problem.kind == Problem::Kind::memory)
+        throw FileError(problem);
+    throw Error(problem);
+}
 
 FileError::FileError(Problem problem) : Error(of_file(std::move(problem))) {}
 

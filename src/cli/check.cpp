@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "cli/json.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/plot.h"
@@ -13,6 +12,7 @@
 #include "measure/laws.h"
 #include "plot/gray_curve.h"
 #include "plot/terminal_plot.h"
+#include "tasks/json.h"
 #include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

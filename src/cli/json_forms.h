@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/json.h"
+#include "tasks/json.h"
 #include "tonewright/pipeline.h"
 #include "tonewright/verify.h"
 

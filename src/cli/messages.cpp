@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/problem.h"
 #include "base/strings.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -63,6 +64,7 @@ MessageOptions& message_options() {
 const MessageStyle& command_style() {
     static const MessageStyle style = {
         [](std::string_view parameter) {
+            if (parameter == "target") return std::string("-o");
             // Options that stand for several values have their plural. A parameter that is no
             // option, such as a file, is a word.
             const std::string option = option_of(parameter);
@@ -78,6 +80,7 @@ const MessageStyle& command_style() {
             if (parameter == "list")
                 return fmt::format("`tonewright list{}`", value == "inputs" ? " --inputs" : "");
             if (parameter == "dimension") return fmt::format("--{}", value);
+            if (parameter == "target") return std::string("-o");
             if (parameter == "settings") return fmt::format("--set {}=...", value);
             const std::string option = option_of(parameter);
             return value.empty() || value == "yes" ? option : fmt::format("{} {}", option, value);
@@ -92,20 +95,10 @@ std::string command_text(const Problem& problem) {
 }
 
 Problem command_problem(const std::exception& error) {
-    if (const auto* own = dynamic_cast<const Error*>(&error)) {
-        return {.kind = own->problem().kind,
-                .what = render(own->problem(), command_style()),
-                .error_number = own->problem().error_number};
-    }
-    if (dynamic_cast<const std::bad_alloc*>(&error))
-        return {.kind = Problem::Kind::memory, .what = "not enough memory"};
-    return {.kind = Problem::Kind::internal, .what = one_line(error.what())};
-}
-
-void throw_problem(const Problem& problem) {
-    if (problem.kind == Problem::Kind::file || problem.kind == Problem::Kind::memory)
-        throw FileError(problem);
-    throw Error(problem);
+    const Problem problem = problem_of(error);
+    return {.kind = problem.kind,
+            .what = render(problem, command_style()),
+            .error_number = problem.error_number};
 }
 
 void print_message(const std::string& text) {

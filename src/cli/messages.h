@@ -36,8 +36,6 @@ struct MessageOptions {
 [[nodiscard]] std::string command_text(const Problem& problem);
 /// An exception as a problem in the words of the command, of kind `internal` if it is not an Error.
 [[nodiscard]] Problem command_problem(const std::exception& error);
-/// @throws FileError  where a file or the memory is the reason; else Error
-[[noreturn]] void throw_problem(const Problem& problem);
 
 /// Prints `tonewright: TEXT` on stderr, always on one line, with its references to parameters in
 /// the style of the command.

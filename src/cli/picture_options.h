@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/lut_input.h"
+#include "tasks/report_picture.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -74,9 +75,6 @@ struct ApplyOptions : ViewOptions {
     std::string output;
     /// Extension of the files in a folder.
     std::string format;
-    // One picture or shot. run_apply() fills them in.
-    std::string in;
-    std::string out;
     FrameOptions frames;
     std::string type;
     std::string statistics = "picture";
@@ -165,15 +163,6 @@ struct ReportPictureOptions {
     PictureChoice choice;
     /// Local operators, which the page cannot run.
     std::vector<ResolvedOperator> local_operators;
-};
-struct ReportPicture {
-    std::string name;
-    int width = 0;
-    int height = 0;
-    std::string exr;         // scene-linear Rec.709 in half floats
-    std::vector<float> rgb;  // the same
-    /// Output of local operators on sRGB, as PNG, in the order of the options.
-    std::vector<std::string> shown;
 };
 
 TONEWRIGHT_NAMESPACE_END

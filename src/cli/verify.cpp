@@ -11,7 +11,6 @@
 
 #include "base/strings.h"
 #include "cli/elapsed_line.h"
-#include "cli/json.h"
 #include "cli/json_forms.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
@@ -19,6 +18,7 @@
 #include "cli/picture_commands.h"
 #include "cli/suggestions.h"
 #include "shader_runs/shader_run.h"
+#include "tasks/json.h"
 #include "tonewright/lint.h"
 #include "tonewright/lut_match.h"
 #include "tonewright/ocio.h"

@@ -112,6 +112,13 @@ OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
     return picture;
 }
 
+void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits) {
+    OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
+    if (bits == 8) type = OIIO::TypeDesc::UINT8;
+    if (bits == 16) type = OIIO::TypeDesc::UINT16;
+    write_image_atomically(make_lut_picture(lut, format), path, type);
+}
+
 TableReader picture_table_reader(TableReader next) {
     return [next = std::move(next)](const std::string& path) {
         if (!is_lut_picture(path) && next) return next(path);

@@ -3,6 +3,8 @@
 
 #include <OpenImageIO/imagebuf.h>
 
+#include <string>
+
 #include "tonewright/lut.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -12,6 +14,11 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// side by side, blue from one to the next, red to the right, green downwards.
 /// @throws Error  another format
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format);
+
+/// Writes such a picture to a file.
+/// @param bits  8, 16 or 32 (float)
+TONEWRIGHT_API void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path,
+                                      int bits);
 
 /// The 3D LUT of such a picture: its size distinguishes the two layouts.
 /// @throws FileError  missing, truncated, of another size (before its pixels are read), with alpha

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/atomic_file.h"
+#include "base/problem.h"
 #include "image/picture_file.h"
 #include "image/tonemap_file.h"
 #include "tonewright/tonemap.h"
@@ -130,10 +131,8 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
                     tonemap_file(own ? *own : tonemapper, frame.in, frame.out, write, read,
                                  nthreads);
                 }
-            } catch (const Error& e) {
-                frame.problem = e.problem();
             } catch (const std::exception& e) {
-                frame.problem = Problem{.kind = Problem::Kind::internal, .what = e.what()};
+                frame.problem = problem_of(e);
             }
             const std::lock_guard lock(mutex);
             if (options.done) options.done(frame);

@@ -26,7 +26,8 @@ struct LutChain {
 /// @param request       of is_lut_chain(); the size is that of sampled 3D LUTs (default 65)
 /// @param nodes         of sampled 3D LUTs; `automatic`: as in the config
 /// @param cache_folder  keeps fitted nodes; empty: nothing is stored
-/// @throws Error        the format lacks an operation; a wrong size; decimals, depths or smooth nodes
+/// @throws Error        the format lacks an operation; a wrong size; decimals, depths or smooth
+/// nodes
 [[nodiscard]] TONEWRIGHT_API LutChain make_lut_chain(const LutRequest& request, LutNodes nodes,
                                                      const std::string& cache_folder = {});
 

@@ -11,11 +11,11 @@
 #include "base/number_cache.h"
 #include "base/strings.h"
 #include "cli/color_line.h"
-#include "cli/pictures/frames.h"
-#include "cli/pictures/meter_cache.h"
 #include "fuzz/private_folder.h"
 #include "image/tonemap_arguments.h"
 #include "plugin/request.h"
+#include "tasks/pictures/frames.h"
+#include "tasks/pictures/meter_cache.h"
 #include "tonewright/registry.h"
 
 namespace {

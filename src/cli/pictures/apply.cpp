@@ -1,37 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tasks/pictures/apply.h"
+
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
-#include <iterator>
-#include <map>
+#include <functional>
 #include <memory>
 #include <optional>
-#include <set>
+#include <string>
+#include <system_error>
+#include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include "base/atomic_file.h"
+#include "base/problem.h"
 #include "base/strings.h"
 #include "cli/elapsed_line.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
-#include "cli/pictures/apply_frames.h"
 #include "cli/pictures/commands.h"
-#include "cli/pictures/frames.h"
-#include "cli/pictures/input_files.h"
-#include "cli/pictures/legend.h"
-#include "cli/pictures/metering.h"
-#include "cli/pictures/picture_input.h"
+#include "cli/pictures/picture_messages.h"
 #include "cli/pictures/progress_bar.h"
+#include "cli/pictures/requests.h"
 #include "cli/pictures/standard_streams.h"
-#include "image/color_tags.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
 #include "image/source_picture.h"
 #include "image/tonemap_file.h"
-#include "tonewright/engine.h"
+#include "tasks/pictures/frames.h"
+#include "tasks/pictures/input_files.h"
+#include "tasks/pictures/metering.h"
+#include "tasks/pictures/read_picture.h"
 #include "tonewright/image_io.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
@@ -39,15 +40,96 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-TonemapOptions::Statistics parse_statistics(const std::string& text) {
-    return find_choice("apply: --statistics", text, {"picture", "sequence", "defaults"}) < 2
-               ? TonemapOptions::Statistics::from_picture
-               : TonemapOptions::Statistics::defaults;
+// ---------------------------------------------------------------------------------------------
+// Options as requests
+
+/// Other commands take the operator by its place.
+/// @throws Error  the name is an operator's, and no file has it
+void expect_picture(const std::string& name) {
+    std::error_code unknown;  // too long a name, too
+    if (std::filesystem::exists(name, unknown) || names_a_file(name)) return;
+    try {
+        // --operator says what is wrong with a setting. With a dot, it may be a file's name.
+        const bool may_be_file = name.find('.') != std::string::npos;
+        (void)resolve_picture_operator(may_be_file ? name : name.substr(0, name.find(':')));
+    } catch (const Error&) {
+        return;
+    }
+    throw Error(fmt::format("apply: IN is {}, an operator; expected a picture, and --operator {}",
+                            name, name));
 }
 
-/// True if color is un-premultiplied first, as far as the picture's alpha is associated.
-bool keeps_cover(const ApplyOptions& options) {
-    return options.alpha != "ignore" && options.alpha != "opaque";
+/// Input and output files.
+struct ApplyFiles {
+    /// One picture, or the pattern of a shot.
+    bool is_single = true;
+    std::vector<FrameFiles> files;
+};
+
+/// The files of the arguments, also those of folders and lists.
+/// @throws Error      no output, or two outputs of one name
+/// @throws FileError  a folder without pictures, or a list that cannot be read
+ApplyFiles files_of(const ApplyOptions& options) {
+    std::vector<std::string> named = options.pictures;
+    expect_picture(named.front());
+    const bool has_output = options.given.contains("--output");
+    std::string output = options.output;
+    if (!has_output) {
+        if (named.size() != 2) {
+            throw Error(fmt::format("apply: -o is missing; expected -o {}",
+                                    named.size() == 1 ? "FILE" : "FOLDER"));
+        }
+        output = named.back();
+        named.pop_back();
+    }
+    const bool is_shot = options.given.contains("--frames");
+    std::vector<std::string> inputs;
+    bool has_many = false;
+    for (const std::string& name : named) {
+        std::vector<std::string> expanded = {name};
+        const bool is_list = name.size() > 1 && name.front() == '@' && !is_shot;
+        if (is_list) expanded = names_of_list(name.substr(1));
+        has_many = has_many || is_list;
+        for (const std::string& entry : expanded) {
+            if (has_output && !is_shot && is_folder(entry)) {
+                const std::vector<std::string> pictures = pictures_of_folder(entry);
+                inputs.insert(inputs.end(), pictures.begin(), pictures.end());
+                has_many = true;
+            } else {
+                inputs.push_back(entry);
+            }
+        }
+    }
+    if (has_output && !is_shot &&
+        (has_many || inputs.size() > 1 || output.ends_with('/') || is_folder(output))) {
+        const std::string format = lowercase(options.format);
+        if (!format.empty() &&
+            !is_picture_extension(format.front() == '.' ? format : "." + format)) {
+            throw Error(
+                fmt::format("apply: --format is {}; expected an extension of pictures, such as "
+                            "png or exr",
+                            options.format));
+        }
+        if (format.empty() && !is_folder(output) && is_picture_extension(extension_of(output))) {
+            throw Error(fmt::format(
+                "apply: -o is {}; expected a folder for several inputs, or --format with it",
+                output));
+        }
+        return {false, files_into_folder(inputs, output, options.format)};
+    }
+    if (inputs.size() != 1) {
+        throw Error(
+            fmt::format("apply: --frames is {} with {} names; expected one with a "
+                        "placeholder for the frame number",
+                        options.frames.frames, inputs.size()));
+    }
+    if (!options.format.empty()) {
+        throw Error(
+            fmt::format("apply: --format is {}; expected -o with a folder, or the "
+                        "extension in the output's name",
+                        options.format));
+    }
+    return {true, {{inputs.front(), output, {}}}};
 }
 
 /// @throws Error  the file name cannot have this output; checked before a large picture is read
@@ -55,11 +137,6 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
     WriteOptions write;
     if (!options.type.empty()) set_pixel_type(write, options.type);
     set_alpha(write, options.alpha);
-    if (!keeps_cover(options) && options.picture.unpremult) {
-        throw Error(fmt::format(
-            "apply: --alpha is {}; expected keep with --unpremult, which divides by alpha",
-            options.alpha));
-    }
     write.compression = options.compression;
     write.quality = options.quality;
     write.subsampling = options.subsampling;
@@ -72,198 +149,129 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
     return write;
 }
 
-/// Without alpha, color is taken as it is.
-TonemapOptions::Unpremult alpha_of(const ApplyOptions& options) {
-    return keeps_cover(options) ? alpha_of(options.picture) : TonemapOptions::Unpremult::no;
+ReadOptions read_options_of(const ApplyOptions& options) {
+    ReadOptions read = read_options_of(options.picture);
+    read.resize = options.resize;
+    return read;
 }
 
-/// For metering, which uses the same colors.
-PictureInput picture_of(const ApplyOptions& options) {
-    PictureInput picture = options.picture;
-    if (!keeps_cover(options)) picture.no_unpremult = true;
-    return picture;
+/// All but the operator.
+TonemapOptions tonemap_options_of(const ApplyOptions& options, const WriteOptions& write) {
+    TonemapOptions tonemap;
+    tonemap.exposure_stops = options.exposure;
+    tonemap.input = options.input;
+    tonemap.display = options.display;
+    tonemap.reference_white = options.reference_white;
+    tonemap.input_units = parse_input_units(options.input_units);
+    tonemap.unpremult = alpha_of(options.picture);
+    tonemap.dither = options.dither;
+    tonemap.mix = options.mix;
+    if (find_choice("statistics", options.statistics, {"picture", "sequence", "defaults"}) == 2)
+        tonemap.statistics = TonemapOptions::Statistics::defaults;
+    take_alpha(tonemap, write);
+    return tonemap;
 }
 
-MeterOptions meter_options_of(const ApplyOptions& options) {
-    MeterOptions result = meter_options_of(
+ShotRequest::Missing missing_of(const ApplyOptions& options) {
+    return static_cast<ShotRequest::Missing>(
+        find_choice("missing", options.frames.missing, {"error", "skip", "hold"}));
+}
+
+bool takes_sequence(const ApplyOptions& options) {
+    return is_same_name(options.statistics, "sequence");
+}
+
+/// Metering sees the colors that are tone mapped.
+ExposureRequest exposure_request_of(const ApplyOptions& options, const TonemapOptions& tonemap) {
+    ExposureRequest request;
+    request.takes_sequence = takes_sequence(options);
+    if (options.metering.method.empty() && !request.takes_sequence) return request;
+    request.meter.options = meter_options_of(
         options.metering, {options.input, options.input_units, options.reference_white},
-        picture_of(options));
-    result.read.resize = options.resize;
-    return result;
+        options.picture);
+    request.meter.options.unpremult = tonemap.unpremult;
+    request.meter.options.read.resize = options.resize;
+    request.meter.cache = options.shot.cache;
+    request.meter.work = {options.picture.threads, options.picture.timeout};
+    if (!options.metering.method.empty()) request.rule = rule_of(options.metering);
+    request.exposure_stops = options.exposure;
+    if (options.shot.adapt) request.adaptation = adaptation_of(options.shot);
+    if (!options.shot.meter_frames.empty())
+        request.frames = parse_frames(options.shot.meter_frames);
+    request.leaves_out_missing = missing_of(options) != ShotRequest::Missing::error;
+    return request;
 }
 
-/// A frame that took too long to meter is not tone mapped: if it were faster the second time, it
-/// would have another frame's exposure.
-void take_error(const MeteredShot& shot, FrameFiles& frame) {
-    for (const MeteredPicture& picture : shot.pictures) {
-        if (picture.path == frame.in) frame.problem = picture.problem;
+void check_shot_options(const ApplyOptions& options, bool is_single) {
+    const bool is_metered = options.given.contains("--auto-exposure") || takes_sequence(options);
+    for (const auto& [name, value] : {std::pair("--meter-frames", options.shot.meter_frames),
+                                      std::pair("--meter-cache", options.shot.cache)}) {
+        if (is_metered || !options.given.contains(name)) continue;
+        throw Error(fmt::format(
+            "apply: {} is {}; expected --auto-exposure or --statistics sequence with it", name,
+            value));
     }
+    if (options.has_legend && find_display(options.display).id != "srgb")
+        throw Error("apply: --display is " + options.display + "; expected srgb with --legend");
+    if (options.has_legend && !is_single)
+        throw Error("apply: --legend is given; expected one picture with it");
+    if (takes_sequence(options) && !options.given.contains("--frames"))
+        throw Error("apply: --statistics is sequence; expected --frames with it");
 }
 
-/// Results of metering a shot before tone mapping: exposures of the frames, statistics of all.
-void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
-                  const std::vector<int>& numbers, const ApplyOptions& options) {
-    const bool has_exposures = !options.metering.method.empty();
-    const bool has_statistics =
-        is_same_name(options.statistics, "sequence") && tonemapper.takes_statistics();
-    if (!has_exposures && !has_statistics) return;
-    const ExposureRule rule = has_exposures ? rule_of(options.metering) : ExposureRule{};
-    const Adaptation adaptation = adaptation_of(options.shot);
-    std::vector<int> all =
-        options.shot.meter_frames.empty() ? numbers : parse_frames(options.shot.meter_frames);
-    const std::set<int> metered(all.begin(), all.end());
-    for (const int number : numbers) {
-        if (metered.contains(number)) continue;
-        throw Error(fmt::format("apply: --meter-frames is {}; expected frame {} of --frames in it",
-                                options.shot.meter_frames, number));
-    }
-    // If frames may be missing, the shot consists of the existing ones.
-    if (options.frames.missing != "error") {
-        std::erase_if(all, [&](int number) {
-            return !std::filesystem::exists(frame_name("in", options.in, number));
-        });
-    }
-    MeteredShot shot;
-    {
-        const QuietStderr quiet;
-        ProgressBar bar(quiet.before(), metered.size());
-        shot = meter_shot(options.in, all, meter_options_of(options), options.shot.cache,
-                          options.picture, [&](std::size_t) { bar.add(true); });
-    }
-    if (has_exposures && rule.method == ExposureRule::Method::histogram)
-        warn_of_histograms(shot.pictures);
-    if (has_statistics) tonemapper = tonemapper.with_statistics(shot.statistics());
-    if (!has_exposures) return;
-    const std::map<int, double> exposures =
-        shot.exposures(rule, options.metering.delta, options.shot.adapt ? &adaptation : nullptr);
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        if (options.picture.timeout > 0) take_error(shot, frames[i]);
-        // A held frame also has the exposure of the frame before it. A frame that could not be
-        // metered cannot be tone mapped either, and reports the same error.
-        const auto after = exposures.upper_bound(numbers[i]);
-        if (after != exposures.begin())
-            frames[i].exposure_stops = options.exposure + std::prev(after)->second;
-    }
-}
+// ---------------------------------------------------------------------------------------------
+// A LUT instead of an operator
 
-/// Each picture separately.
-/// @returns  the pictures whose exposure comes from a histogram
-/// @throws  the first error, if there is one picture only
-std::vector<MeteredPicture> meter_each(std::vector<FrameFiles>& files,
-                                       const ApplyOptions& options) {
-    if (options.metering.method.empty()) return {};
-    const ExposureRule rule = rule_of(options.metering);
-    std::vector<std::string> paths;
-    paths.reserve(files.size());
-    for (const FrameFiles& file : files)
-        paths.push_back(file.in);
-    std::vector<MeteredPicture> metered =
-        meter_pictures(paths, meter_options_of(options), options.shot.cache, options.picture);
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        // If there are several, tone mapping reports the reason.
-        if (files.size() == 1 && metered[i].problem) throw_problem(*metered[i].problem);
-        if (options.picture.timeout > 0) files[i].problem = metered[i].problem;
-        if (metered[i].problem) continue;
-        files[i].exposure_stops =
-            options.exposure +
-            suggested_exposure(
-                metered_luminance(metered[i].metering, rule.method, options.metering.delta), rule);
-    }
-    if (rule.method != ExposureRule::Method::histogram) return {};
-    return metered;
-}
-
-/// @param light  exposure, input, units and alpha of the picture
-OIIO::ImageBuf resized(const OIIO::ImageBuf& source, const ApplyOptions& options,
-                       const std::string& path, const TonemapOptions& light) {
-    return about_picture(path, [&] {
-        return resized_picture(source, options.resize, light,
-                               options.picture.max_pixels.value_or(kMaxPixels),
-                               options.picture.threads);
-    });
-}
-
-/// @param stated  the input that the LUT states; the first picture finds it, and says so
-void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles& file,
-               std::optional<LutOptions>& stated) {
-    WriteOptions write = write_options_of(options, file.out);
-    Warnings warnings(file.out);
-    write.warn = [hear = warnings.hearer()](const std::string& text) {
-        // The LUT decides the display.
-        const MessageStyle style = {
-            .setting = [](std::string_view parameter, std::string_view value) {
-                const std::string option = command_style().setting(parameter, value);
-                return parameter == "display" ? "a LUT that is baked with " + option : option;
-            }};
-        hear(render(text, style));
-    };
-    OIIO::ImageBuf source = read_picture(file.in, options.picture, options.input);
-    SourceColor color = about_picture(file.in, [&] {
-        (void)channel_layout(source.spec());
-        return source_color(source.spec(), options.input);
-    });
-    std::string name = color.name;
-    if (!options.resize.empty()) {
-        TonemapOptions light;
-        light.input = options.input;
-        light.exposure_stops = options.exposure;
-        light.reference_white = options.reference_white;
-        light.input_units = parse_input_units(options.input_units);
-        light.unpremult = alpha_of(options);
-        source = resized(source, options, file.in, light);
-        color = source_color(source.spec(), options.input);
-    } else if (color.convert) {
-        source = converted_picture(source, color);
-        color = source_color(source.spec(), kAutoInput);
-        name = color.name;
-    }
-    if (!stated) stated = with_stated_input(options.lut, name);
-    const Pipeline before = before_lut("apply", *stated, options, color);
-    auto quiet = std::make_optional<QuietStderr>();
-    const SimdEngine encode(before);
-    OIIO::ImageBuf result;
-    const auto map = [&](const float* in, float* out, std::size_t count) {
-        if (before.empty()) {
-            lut.run_rgb(in, out, count);
-            return;
-        }
-        std::vector<float> code(3 * count);
-        encode.run_rgb(in, code.data(), count);
-        lut.run_rgb(code.data(), out, count);
-    };
-    if (!map_colors(result, source, map, alpha_of(options), {}, options.picture.threads))
-        throw FileError(file.in + ": " + first_line(result.geterror()));
-    if (const std::optional<std::string> display = stated_display(options.lut))
-        tag_as_shown_on(*display, result.specmod());
-    if (write.write_provenance) {
-        const std::string lut_name = std::filesystem::path(options.lut.file).filename().string();
-        const std::string size = options.resize.empty() ? "" : ", resize " + options.resize;
-        result.specmod().attribute(
-            "Software", fmt::format("Tonewright {}: LUT {}{}", TONEWRIGHT_VERSION, lut_name, size));
-    }
-    write_image_atomically(result, file.out, write);
-    quiet.reset();
-    warnings.print();
-}
-
-int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
+int apply_lut(const ApplyOptions& options, const ApplyFiles& files) {
     // Reports wrong options before a picture is read.
     check_lut_options("apply", options.lut, options, source_color({}, options.input));
     const LutFile lut = with_memory_for(options.lut.file, [&] {
         return open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
     });
-    (void)write_options_of(options, files.files.front().out);
+    const WriteOptions write = write_options_of(options, files.files.front().out);
+    const TonemapOptions light = tonemap_options_of(options, write);
     check_overwriting(files.files, options.is_in_place);
-    std::optional<LutOptions> stated;
+    std::optional<LutOptions> stated;  // the first picture finds the input, and says so
+    const auto apply_to = [&](const FrameFiles& file) {
+        PictureMessages messages({}, file.out);
+        const LutSource source =
+            lut_source(read_picture(file.in, options.picture, options.input), file.in, light,
+                       read_options_of(options), options.picture.threads);
+        if (!stated) stated = with_stated_input(options.lut, source.name);
+        LutPictureRequest request = {
+            .lut = lut,
+            .lut_name = std::filesystem::path(options.lut.file).filename().string(),
+            .before = before_lut("apply", *stated, options, source.color),
+            .display = stated_display(options.lut),
+            .unpremult = light.unpremult,
+            .resize = options.resize,
+            .write = write,
+            .nthreads = options.picture.threads};
+        messages.hear(request.write);
+        request.write.warn = [hear = request.write.warn](const std::string& text) {
+            // The LUT decides the display.
+            const MessageStyle style = {
+                .setting = [](std::string_view parameter, std::string_view value) {
+                    const std::string option = command_style().setting(parameter, value);
+                    return parameter == "display" ? "a LUT that is baked with " + option : option;
+                }};
+            hear(render(text, style));
+        };
+        {
+            const QuietStderr quiet;
+            write_through_lut(source, file, request);
+        }
+        messages.print();
+    };
     if (files.is_single) {
-        apply_lut(options, lut, files.files.front(), stated);
+        apply_to(files.files.front());
         return kOk;
     }
     require_writable_folder(options.output);
     int exit_code = kOk;
-    for (FrameFiles& file : files.files) {
+    for (const FrameFiles& file : files.files) {
         try {
-            apply_lut(options, lut, file, stated);
+            apply_to(file);
         } catch (const Error& e) {
             if (e.problem().kind == Problem::Kind::check) throw;  // --strict
             print_message("apply: " + render(e.problem(), command_style()));
@@ -271,6 +279,62 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
         }
     }
     return exit_code;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Results
+
+/// Prints lines for failures.
+/// @returns  their number
+std::size_t print_failures(const std::vector<FrameFiles>& files) {
+    constexpr std::size_t kMostLines = 50;
+    std::size_t failed = 0;
+    // Warnings that --strict makes errors are the same for all. A million errors are known by their
+    // hash.
+    std::unordered_set<std::size_t> errors;
+    for (const FrameFiles& file : files) {
+        if (!file.problem) continue;
+        ++failed;
+        const std::string text = render(*file.problem, command_style());
+        if (errors.insert(std::hash<std::string>()(text)).second && errors.size() <= kMostLines)
+            print_message("apply: " + text);
+    }
+    if (errors.size() > kMostLines)
+        print_message(fmt::format("apply: and {} more", errors.size() - kMostLines));
+    return failed;
+}
+
+/// One line for all, on a terminal or if not all were simply written.
+void print_summary(const std::string& text, bool is_all_written) {
+    if (says_what_was_done() || (!is_all_written && !message_options().is_quiet))
+        print_message("apply: " + text);
+}
+
+/// Lines for failures, and one for all.
+void print_summary(const Shot& shot) {
+    std::vector<int> failed;
+    std::size_t skipped = 0;
+    for (std::size_t i = 0; i < shot.frames.size(); ++i) {
+        const FrameFiles& frame = shot.frames[i];
+        skipped += frame.is_skipped ? 1 : 0;
+        if (frame.problem) failed.push_back(shot.numbers[i]);
+    }
+    print_failures(shot.frames);
+    const std::size_t count = shot.frames.size() + shot.missing_count;
+    const std::size_t written = shot.frames.size() - skipped - failed.size();
+    std::string text = fmt::format("{} frame{}: {} written", count, count == 1 ? "" : "s", written);
+    if (skipped > 0) text += fmt::format(", {} skipped", skipped);
+    if (shot.missing_count > 0) text += fmt::format(", {} missing", shot.missing_count);
+    if (shot.held_count > 0) text += fmt::format(", {} held for missing ones", shot.held_count);
+    if (!failed.empty())
+        text += fmt::format(", {} failed: {}", failed.size(), format_frames(failed));
+    print_summary(text, written == count && shot.held_count == 0);
+}
+
+int exit_code_of(const std::vector<FrameFiles>& files) {
+    const bool any_failed = std::any_of(files.begin(), files.end(),
+                                        [](const FrameFiles& f) { return f.problem.has_value(); });
+    return any_failed ? kCheckFailed : kOk;
 }
 
 /// "render.exr (640 x 360 half, lin_rec709) -> out.png: AgX (agx_blender), exposure +1, sRGB,
@@ -297,19 +361,113 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Ap
     line.print(text);
 }
 
-void write_with_legend(const Tonemapper& tonemapper, const FrameFiles& file,
-                       const ApplyOptions& options, const WriteOptions& write) {
-    OIIO::ImageBuf picture;
-    OIIO::ImageBuf source = read_picture(file.in, options.picture, options.input);
-    if (!options.resize.empty()) source = resized(source, options, file.in, tonemapper.options());
-    if (!tonemapper(picture, source, {}, options.picture.threads))
-        throw FileError(file.in + ": " + first_line(picture.geterror()));
-    write_image_atomically(with_legend(with_associated_alpha(picture)), file.out, write);
+// ---------------------------------------------------------------------------------------------
+
+void tell_default_operator(const ApplyOptions& options) {
+    if (!options.op.empty() || options.is_false_color || message_options().is_quiet) return;
+    print_message(fmt::format("apply: operator is {} ({}), the default; use --operator for another",
+                              kDefaultOperator, find_operator(kDefaultOperator).view));
 }
 
-}  // namespace
+void run(const Tonemapper& tonemapper, std::vector<FrameFiles>& files, SequenceOptions sequence,
+         const ApplyOptions& options, PictureMessages& messages, const char* what) {
+    {
+        const QuietStderr quiet;
+        ProgressBar bar(quiet.before(), files.size(), what);
+        sequence.done = [&](const FrameFiles& file) { bar.add(!file.is_skipped); };
+        tonemap_pictures(tonemapper, files, sequence, options.picture.timeout);
+    }
+    messages.print();
+}
 
-namespace {
+int apply_to_shot(Tonemapper& tonemapper, const ApplyOptions& options, const FrameFiles& pattern,
+                  SequenceOptions sequence) {
+    tell_default_operator(options);
+    const ExposureRequest exposure = exposure_request_of(options, tonemapper.options());
+    std::optional<QuietStderr> quiet(std::in_place);
+    Shot shot = plan_shot({.in = pattern.in,
+                           .out = pattern.out,
+                           .numbers = parse_frames(options.frames.frames),
+                           .missing = missing_of(options),
+                           .skips_existing = options.frames.skip_existing,
+                           .is_in_place = options.is_in_place});
+    {
+        std::optional<ProgressBar> bar(std::in_place, quiet->before(), shot.frames.size());
+        const Listener listener = {.warn =
+                                       [&](const std::string& text) {
+                                           bar.reset();
+                                           quiet.reset();
+                                           warn(text);
+                                       },
+                                   .progress = [&](std::size_t, std::size_t) { bar->add(true); }};
+        meter_frames(tonemapper, shot, pattern.in, exposure, listener);
+    }
+    quiet.reset();
+    PictureMessages messages(pattern.in, pattern.out);
+    messages.hear(sequence.read);
+    messages.hear(sequence.write);
+    sequence.skip_existing = options.frames.skip_existing;
+    sequence.jobs = options.frames.jobs;
+    run(tonemapper, shot.frames, sequence, options, messages, "frames");
+    print_summary(shot);
+    return exit_code_of(shot.frames);
+}
+
+int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
+                   std::vector<FrameFiles>& files, SequenceOptions sequence) {
+    require_writable_folder(options.output);
+    const ExposureRequest exposure = exposure_request_of(options, tonemapper.options());
+    if (exposure.rule)
+        warn_of_histograms(meter_files(files, exposure), *exposure.rule, {.warn = warn});
+    tell_default_operator(options);
+    PictureMessages messages;
+    messages.hear(sequence.read);
+    messages.hear(sequence.write);
+    sequence.names_pictures = true;
+    run(tonemapper, files, sequence, options, messages, "pictures");
+    const std::size_t failed = print_failures(files);
+    const std::size_t written = files.size() - failed;
+    std::string text = fmt::format("{} picture{}: {} written", files.size(),
+                                   files.size() == 1 ? "" : "s", written);
+    if (failed > 0) text += fmt::format(", {} failed", failed);
+    print_summary(text, failed == 0);
+    return exit_code_of(files);
+}
+
+int apply_to_picture(Tonemapper& tonemapper, const ApplyOptions& options,
+                     std::vector<FrameFiles>& files, SequenceOptions sequence) {
+    FrameFiles& file = files.front();
+    remove_leftovers({file.out});
+    PictureMessages messages(file.in, file.out);
+    messages.hear(sequence.read);
+    messages.hear(sequence.write);
+    std::optional<OIIO::ImageSpec> header;
+    sequence.read.header = [&](const OIIO::ImageSpec& spec) { header = spec; };
+    const ExposureRequest exposure = exposure_request_of(options, tonemapper.options());
+    const ResultLine result;
+    std::vector<MeteredPicture> metered;
+    try {
+        const QuietStderr quiet;
+        const ElapsedLine line("apply", quiet.before());
+        if (exposure.rule) metered = meter_files(files, exposure);
+        if (options.has_legend) {
+            if (file.exposure_stops) tonemapper = tonemapper.with_exposure(*file.exposure_stops);
+            write_with_legend(tonemapper, read_picture(file.in, sequence.read, options.input), file,
+                              sequence.write, sequence.read, sequence.nthreads);
+        } else {
+            tonemap_pictures(tonemapper, files, sequence, options.picture.timeout);
+            if (file.problem) throw_problem(*file.problem);
+        }
+    } catch (const FileError& e) {
+        if (!is_frame_pattern(file.in)) throw;
+        throw FileError(e.text() + "; for the frames of a shot, use --frames 1-100");
+    }
+    messages.print();
+    if (exposure.rule) warn_of_histograms(metered, *exposure.rule, {.warn = warn});
+    tell_default_operator(options);
+    print_result(file, tonemapper, options, header, result);
+    return kOk;
+}
 
 int run_on_files(ApplyOptions options) {
     use_threads(options.picture);
@@ -321,89 +479,21 @@ int run_on_files(ApplyOptions options) {
     take_lut_options("apply", options.lut, options, LutOption::yes);
     std::string op = options.is_false_color ? "false_color" : options.op;
     if (op.empty()) op = kDefaultOperator;
-    TonemapOptions tonemap;
-    tonemap.op = resolve_for_command(op, options.settings(), options.look);
-    tonemap.exposure_stops = options.exposure;
-    tonemap.input = options.input;
-    tonemap.display = options.display;
-    tonemap.reference_white = options.reference_white;
-    tonemap.input_units = parse_input_units(options.input_units);
-    tonemap.unpremult = alpha_of(options);
-    tonemap.dither = options.dither;
-    tonemap.mix = options.mix;
-    tonemap.statistics = parse_statistics(options.statistics);
-    const bool is_of_sequence = is_same_name(options.statistics, "sequence");
-    const bool is_metered = options.given.contains("--auto-exposure") || is_of_sequence;
-    for (const auto& [name, value] : {std::pair("--meter-frames", options.shot.meter_frames),
-                                      std::pair("--meter-cache", options.shot.cache)}) {
-        if (is_metered || !options.given.contains(name)) continue;
-        throw Error(fmt::format(
-            "apply: {} is {}; expected --auto-exposure or --statistics sequence with it", name,
-            value));
-    }
-    const auto tell_default = [&] {
-        if (!options.op.empty() || options.is_false_color || message_options().is_quiet) return;
-        print_message(
-            fmt::format("apply: operator is {} ({}), the default; use --operator "
-                        "for another",
-                        kDefaultOperator, find_operator(kDefaultOperator).view));
-    };
+    const ResolvedOperator resolved = resolve_for_command(op, options.settings(), options.look);
+    const FrameFiles first = files.files.front();
+    SequenceOptions sequence;
+    sequence.write = write_options_of(options, first.out);
+    sequence.read = read_options_of(options);
+    sequence.nthreads = options.picture.threads;
+    TonemapOptions tonemap = tonemap_options_of(options, sequence.write);
+    tonemap.op = resolved;
+    check_shot_options(options, files.is_single);
     Tonemapper tonemapper(tonemap);  // reports a wrong name before it reads a large file
-    if (options.has_legend && find_display(options.display).id != "srgb") {
-        throw Error("apply: --display is " + options.display + "; expected srgb with --legend");
-    }
-    if (options.has_legend && !files.is_single)
-        throw Error("apply: --legend is given; expected one picture with it");
-    WriteOptions write = write_options_of(options, files.files.front().out);
-    if (options.given.contains("--frames")) {
-        options.in = files.files.front().in;
-        options.out = files.files.front().out;
-        const auto prepare = [&](std::vector<FrameFiles>& all, const std::vector<int>& numbers) {
-            meter_frames(tonemapper, all, numbers, options);
-        };
-        tell_default();
-        return apply_to_frames(tonemapper, options, write, prepare);
-    }
-    if (is_of_sequence) throw Error("apply: --statistics is sequence; expected --frames with it");
+    if (options.given.contains("--frames"))
+        return apply_to_shot(tonemapper, options, first, sequence);
     check_overwriting(files.files, options.is_in_place);
-    if (!files.is_single) {
-        require_writable_folder(options.output);
-        warn_of_histograms(meter_each(files.files, options));
-        tell_default();
-        return apply_to_files(tonemapper, options, files.files, write);
-    }
-    FrameFiles& file = files.files.front();
-    remove_leftovers({file.out});
-    Warnings warnings(file.out);
-    write.warn = warnings.hearer();
-    ReadMessages messages(file.in);
-    std::optional<OIIO::ImageSpec> header;
-    ReadOptions read = messages.hearing(read_options_of(options));
-    read.header = [&](const OIIO::ImageSpec& spec) { header = spec; };
-    const ResultLine result;
-    std::vector<MeteredPicture> metered;
-    try {
-        const QuietStderr quiet;
-        const ElapsedLine line("apply", quiet.before());
-        metered = meter_each(files.files, options);
-        if (file.exposure_stops) tonemapper = tonemapper.with_exposure(*file.exposure_stops);
-        if (options.has_legend) {
-            write_with_legend(tonemapper, file, options, write);
-        } else if (options.picture.timeout > 0) {
-            tonemap_contained(tonemapper, file, write, read, options.picture);
-        } else {
-            tonemap_file(tonemapper, file.in, file.out, write, read, options.picture.threads);
-        }
-    } catch (const FileError& e) {
-        if (!is_frame_pattern(file.in)) throw;
-        throw FileError(e.text() + "; for the frames of a shot, use --frames 1-100");
-    }
-    messages.print();
-    warnings.print();
-    warn_of_histograms(metered);
-    tell_default();
-    print_result(file, tonemapper, options, header, result);
-    return kOk;
+    return files.is_single ? apply_to_picture(tonemapper, options, files.files, sequence)
+                           : apply_to_files(tonemapper, options, files.files, sequence);
 }
 
 }  // namespace

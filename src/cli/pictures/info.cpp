@@ -9,11 +9,12 @@
 
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "cli/json.h"
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
-#include "cli/pictures/picture_input.h"
-#include "image/picture_file.h"
+#include "cli/pictures/picture_messages.h"
+#include "cli/pictures/requests.h"
+#include "tasks/json.h"
+#include "tasks/pictures/read_picture.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -41,14 +42,7 @@ std::string text_of_white(const Chromaticity& white) {
     return fmt::format("{:.4f} {:.4f}", white.x, white.y);
 }
 
-/// A picture's header, and the choice among its layers and subimages.
-struct Told {
-    OIIO::ImageSpec spec;
-    PictureDescription said;
-    std::vector<std::string> choices;
-};
-
-void print_json(const std::string& path, const Told& told) {
+void print_json(const std::string& path, const PictureInfo& told) {
     const auto& [spec, said, choices] = told;
     const Primaries& p = said.color.primaries;
     Json primaries = Json::array({p.red.x, p.red.y, p.green.x, p.green.y, p.blue.x, p.blue.y});
@@ -72,7 +66,7 @@ void print_json(const std::string& path, const Told& told) {
                            .dump());
 }
 
-void print_text(const std::string& path, const Told& told) {
+void print_text(const std::string& path, const PictureInfo& told) {
     const auto& [spec, said, choices] = told;
     constexpr std::array kTurned = {"upright",
                                     "mirrored",
@@ -107,19 +101,11 @@ void print_text(const std::string& path, const Told& told) {
 
 void run_info(const InfoOptions& options) {
     for (const std::string& path : options.pictures) {
-        Told told;
-        std::vector<std::string> warnings;
-        ReadOptions read = read_options_of(options.choice);
-        read.warn = [&](const std::string& text) { warnings.push_back(text); };
-        read.note = [&](const std::string& text) { told.choices.push_back(text); };
-        about_picture(path, [&] {
+        PictureInfo told = [&] {
             const QuietStderr quiet;
-            told.spec = PictureReader(path, 1, read).spec();
-            told.said = describe_picture(told.spec, options.input);
-        });
-        std::vector<std::string>& ignored = told.said.ignored;
-        ignored.insert(ignored.begin(), warnings.begin(), warnings.end());
-        for (std::vector<std::string>* texts : {&ignored, &told.choices}) {
+            return read_picture_info(path, read_options_of(options.choice), options.input);
+        }();
+        for (std::vector<std::string>* texts : {&told.said.ignored, &told.choices}) {
             for (std::string& text : *texts)
                 text = render(text, command_style());
         }

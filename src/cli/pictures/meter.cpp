@@ -12,14 +12,15 @@
 
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "cli/json.h"
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
-#include "cli/pictures/frames.h"
-#include "cli/pictures/meter_cache.h"
-#include "cli/pictures/metering.h"
-#include "cli/pictures/picture_input.h"
+#include "cli/pictures/picture_messages.h"
+#include "cli/pictures/requests.h"
 #include "image/picture_file.h"
+#include "tasks/json.h"
+#include "tasks/pictures/frames.h"
+#include "tasks/pictures/meter_cache.h"
+#include "tasks/pictures/metering.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -44,16 +45,9 @@ struct Metered {
     std::optional<double> adapted;  // stops
 };
 
-/// The figures behind an exposure.
-struct Suggestion {
-    double luminance;
-    double stops;
-};
-
 Suggestion suggestion(const Metering& metering, ExposureRule rule, Method method, double delta) {
     rule.method = method;
-    const double luminance = metered_luminance(metering, method, delta);
-    return {luminance, suggested_exposure(luminance, rule)};
+    return suggest_exposure(metering, rule, delta);
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -155,8 +149,8 @@ void print_picture(const Metered& metered, const MeterCommandOptions& options,
         const Suggestion s = suggestion(m, rule, method.method, options.metering.delta);
         const bool is_chosen = method.method == rule.method;
         if (is_chosen) chosen = s.luminance;
-        fmt::print("  {:<14}{:>12.5g}{:>9.2f}{:>+11.2f}{}\n", method.title, s.luminance,
-                   ev100(s.luminance), s.stops, is_chosen ? "  <" : "");
+        fmt::print("  {:<14}{:>12.5g}{:>9.2f}{:>+11.2f}{}\n", method.title, s.luminance, s.ev100,
+                   s.stops, is_chosen ? "  <" : "");
     }
     if (m.counted > m.black) {
         fmt::print("  {:<14}{:>12.5g}\n  {:<14}{:>12.5g}\n", "no delta", m.geometric_mean,
@@ -194,8 +188,7 @@ void print_table(const std::vector<Metered>& all, const MeterCommandOptions& opt
         if (name.size() > width) name = "..." + name.substr(name.size() - width + 3);
         const Suggestion s = suggestion(m, rule, rule.method, options.metering.delta);
         fmt::print("{:<{}}{:>12.4g}{:>12.4g}{:>10.4g}{:>10.4g}{:>8.2f}{:>+10.3f}", name, width,
-                   m.log_average, m.histogram_average, m.mean, m.maximum, ev100(s.luminance),
-                   s.stops);
+                   m.log_average, m.histogram_average, m.mean, m.maximum, s.ev100, s.stops);
         if (metered.adapted) fmt::print("{:>+10.3f}", *metered.adapted);
         fmt::print("\n");
     }
@@ -208,7 +201,7 @@ Json to_json(const Metered& metered, const MeterCommandOptions& options, const E
     Json j = {{"file", metered.picture.path}};
     if (metered.frame) j.add("frame", *metered.frame);
     if (metered.picture.problem) {
-        j.add("error", metered.picture.problem->what);
+        j.add("error", render(*metered.picture.problem, command_style()));
         return j;
     }
     const Json measured = tonewright::to_json(metered.picture.metering);
@@ -218,9 +211,8 @@ Json to_json(const Metered& metered, const MeterCommandOptions& options, const E
     for (const NamedMethod& method : kMethods) {
         const Suggestion s =
             suggestion(metered.picture.metering, rule, method.method, options.metering.delta);
-        suggested.add(
-            method.name,
-            {{"luminance", s.luminance}, {"ev100", ev100(s.luminance)}, {"exposure", s.stops}});
+        suggested.add(method.name,
+                      {{"luminance", s.luminance}, {"ev100", s.ev100}, {"exposure", s.stops}});
     }
     j.add("suggested", suggested);
     j.add("exposure", suggested.at(options.metering.method).at("exposure"));
@@ -230,13 +222,12 @@ Json to_json(const Metered& metered, const MeterCommandOptions& options, const E
 
 // ---------------------------------------------------------------------------------------------
 
-std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterOptions& how,
+std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterRequest& request,
                                const ExposureRule& rule) {
     const QuietStderr quiet;
     std::vector<Metered> all;
     if (options.frames.empty()) {
-        for (MeteredPicture& picture :
-             meter_pictures(options.in, how, options.shot.cache, options.picture))
+        for (MeteredPicture& picture : meter_pictures(options.in, request))
             all.push_back({std::move(picture), {}, {}});
         return all;
     }
@@ -247,8 +238,7 @@ std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterOp
                         options.frames, options.in.size()));
     }
     const Adaptation adaptation = adaptation_of(options.shot);
-    const MeteredShot shot = meter_shot(options.in.front(), parse_frames(options.frames), how,
-                                        options.shot.cache, options.picture);
+    const MeteredShot shot = meter_shot(options.in.front(), parse_frames(options.frames), request);
     std::map<int, double> adapted;
     if (options.shot.adapt) adapted = shot.exposures(rule, options.metering.delta, &adaptation);
     for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
@@ -260,14 +250,11 @@ std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterOp
     return all;
 }
 
-}  // namespace
-
-namespace {
-
-/// Prints the facts in the header of a single picture. Frames of a shot say the same, and are many.
+/// What the header of a single picture says; frames of a shot say the same, and are many.
 void tell_header(const std::string& path, const MeterCommandOptions& options) {
-    ReadMessages messages(path);
-    const ReadOptions read = messages.hearing(read_options_of(options.picture));
+    PictureMessages messages(path);
+    ReadOptions read = read_options_of(options.picture);
+    messages.hear(read);
     {
         const QuietStderr quiet;
         const PictureReader reader(path, 1, read);
@@ -282,16 +269,21 @@ int run_meter(const MeterCommandOptions& options) {
     int exit_code = kOk;
     use_threads(options.picture);
     const ExposureRule rule = rule_of(options.metering);
-    const MeterOptions how = meter_options_of(
-        options.metering, {options.input, options.input_units, options.reference_white},
-        options.picture);
-    const std::vector<Metered> all = meter_all(options, how, rule);
+    const MeterRequest request = {
+        .options = meter_options_of(options.metering,
+                                    {options.input, options.input_units, options.reference_white},
+                                    options.picture),
+        .cache = options.shot.cache,
+        .work = {options.picture.threads, options.picture.timeout}};
+    const std::vector<Metered> all = meter_all(options, request, rule);
     if (options.json) {
         Json pictures = Json::array();
         for (const Metered& metered : all)
             pictures.push_back(to_json(metered, options, rule));
-        fmt::print("{}\n",
-                   Json{{"options", tonewright::to_json(how)}, {"pictures", pictures}}.dump(2));
+        fmt::print(
+            "{}\n",
+            Json{{"options", tonewright::to_json(request.options)}, {"pictures", pictures}}.dump(
+                2));
     } else if (all.size() > 1) {
         print_table(all, options, rule);
     } else if (!all.front().picture.problem) {
@@ -305,7 +297,7 @@ int run_meter(const MeterCommandOptions& options) {
         if (!picture.problem) continue;
         const bool is_usage = picture.problem->kind == Problem::Kind::usage;
         exit_code = std::max<int>(exit_code, is_usage ? kUsage : kFile);
-        print_message("meter: " + picture.problem->what);
+        print_message("meter: " + unrendered(*picture.problem));
     }
     return exit_code;
 }

@@ -1,8 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <OpenImageIO/imagebuf.h>
+
 #include <string_view>
+#include <vector>
 
 #include "base/atomic_file.h"
+#include "base/strings.h"
+#include "cli/elapsed_line.h"
 #include "cli/pictures/commands.h"
+#include "cli/pictures/picture_messages.h"
+#include "image/lut_picture.h"
+#include "image/shipped_pictures.h"
+#include "lut/shipped_set.h"
+#include "plot/cairo_surface.h"
+#include "tasks/pictures/read_picture.h"
+#include "tasks/pictures/report_picture.h"
+#include "tonewright/chart.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/image_io.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -22,14 +37,27 @@ class Commands : public PictureCommands {
         return run_meter(options);
     }
     void compare(const CompareOptions& options) const override { run_compare(options); }
-    void chart(const ChartOptions& options) const override { run_chart(options); }
+    void chart(const ChartOptions& options) const override {
+        const OIIO::TypeDesc type = parse_pixel_type(options.type);
+        if (!type.is_floating_point())
+            throw Error("chart: -d is " + options.type + "; expected half or float");
+        write_image_atomically(make_chart(options.width, options.height), options.file, type);
+    }
     void sheet(const SheetOptions& options) const override { run_sheet(options); }
     void info(const InfoOptions& options) const override { run_info(options); }
     [[nodiscard]] std::vector<float> read_pixels(const std::string& path) const override {
-        return read_picture_pixels(path);
+        return light_pixels(read_picture(path), path);
     }
     void write_plot(const CurvePlot& plot, const std::string& path, int width) const override {
-        write_plot_file(plot, path, width);
+        if (extension_of(path) == ".pdf") {
+            write_text_atomically(path, to_pdf(plot, width));
+            return;
+        }
+        PlotPixels pixels = to_pixels(plot, width);
+        OIIO::ImageSpec spec(pixels.width, pixels.height, 3, OIIO::TypeDesc::UINT8);
+        spec.attribute("oiio:ColorSpace", "sRGB");
+        write_image_atomically(OIIO::ImageBuf(spec, pixels.rgb.data()), path,
+                               OIIO::TypeDesc::UINT8);
     }
     [[nodiscard]] Lut read_lut(const std::string& path) const override {
         return load_lut_picture(path);
@@ -40,15 +68,35 @@ class Commands : public PictureCommands {
     }
     void write_shipped_luts(const std::string& folder,
                             const std::string& application) const override {
-        tonewright::write_shipped_luts(folder, application);
+        require_writable_folder(folder);
+        const ElapsedLine line("bake --all");
+        std::vector<ShippedLut> luts = bake_shipped_luts(application);
+        std::vector<GeneratedFile> files = make_shipped_files(luts);
+        for (GeneratedFile& file : describe_shipped_luts(luts)) {
+            if (file.path.ends_with(".md")) file.contents = render(file.contents, command_style());
+            files.push_back(std::move(file));
+        }
+        write_generated_files(folder, files, "MANIFEST.csv");
     }
     [[nodiscard]] ReportPicture read_report_picture(
         const ReportPictureOptions& options) const override {
-        return tonewright::read_report_picture(options);
+        ReportPictureRequest request = {.path = options.path,
+                                        .input_units = parse_input_units(options.input_units),
+                                        .reference_white = options.reference_white,
+                                        .width = options.width,
+                                        .local_operators = options.local_operators};
+        if (!options.path.empty()) request.picture = read_picture(options.path, options.choice);
+        const QuietStderr quiet;
+        return make_report_picture(request);
     }
 };
 
 }  // namespace
+
+Lut load_lut_picture(const std::string& path) {
+    const QuietStderr quiet;
+    return read_lut_picture(path);
+}
 
 extern "C" [[gnu::visibility("default")]] const PictureCommands* tonewright_picture_commands(
     const char* build) {

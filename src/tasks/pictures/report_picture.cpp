@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tasks/pictures/report_picture.h"
+
 #include <OpenImageIO/filesystem.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
+#include "base/input_file.h"
 #include "base/strings.h"
-#include "cli/pictures/commands.h"
-#include "cli/pictures/picture_input.h"
 #include "image/comparison.h"
 #include "image/contact_sheet.h"
 #include "image/picture_file.h"
 #include "image/source_picture.h"
+#include "tasks/pictures/read_picture.h"
 #include "tonewright/chart.h"
 #include "tonewright/image_io.h"
-#include "tonewright/tonemap.h"
+#include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -36,47 +39,45 @@ std::string encoded(const std::vector<float>& rgb, int width, int height, const 
     return {memory.buffer().begin(), memory.buffer().end()};
 }
 
-OIIO::ImageBuf light_of(const ReportPictureOptions& options) {
-    if (options.path.empty()) {
+OIIO::ImageBuf light_of(const ReportPictureRequest& request) {
+    const OIIO::ImageBuf& picture = request.picture;
+    if (!picture.initialized()) {
         constexpr int kLargestChart = 1536;
-        const int width = std::min(options.width, kLargestChart);
+        const int width = std::min(request.width, kLargestChart);
         return make_chart(width, width * 9 / 16);
     }
-    OIIO::ImageBuf picture = read_picture(options.path, options.choice);
-    const QuietStderr quiet;
-    const SourceColor source = about_picture(options.path, [&] {
+    const SourceColor source = about_picture(request.path, [&] {
         (void)channel_layout(picture.spec());
         check_shown_window(picture);
-        return in_units(source_color(picture.spec(), kAutoInput),
-                        parse_input_units(options.input_units));
+        return in_units(source_color(picture.spec(), kAutoInput), request.input_units);
     });
-    return with_memory_for(options.path, [&] {
+    return with_memory_for(request.path, [&] {
         const OIIO::ImageBuf light =
-            to_rec709_light(picture, source, options.reference_white, options.path);
-        return shown_window(light).width() > options.width ? resize_scene(light, options.width)
+            to_rec709_light(picture, source, request.reference_white, request.path);
+        return shown_window(light).width() > request.width ? resize_scene(light, request.width)
                                                            : light;
     });
 }
 
 }  // namespace
 
-ReportPicture read_report_picture(const ReportPictureOptions& options) {
+ReportPicture make_report_picture(const ReportPictureRequest& request) {
     ReportPicture result;
     result.name =
-        options.path.empty() ? "chart" : std::filesystem::path(options.path).filename().string();
-    const OIIO::ImageBuf light = shown_rgb(light_of(options));
+        request.path.empty() ? "chart" : std::filesystem::path(request.path).filename().string();
+    const OIIO::ImageBuf light = shown_rgb(light_of(request));
     const OIIO::ROI window = light.roi();
     result.width = window.width();
     result.height = window.height();
     std::vector<float> rgb(3 * window.npixels());
     if (!light.get_pixels(window, OIIO::TypeFloat, rgb.data()))
-        throw FileError(options.path + ": " + first_line(light.geterror()));
+        throw FileError(request.path + ": " + first_line(light.geterror()));
     // Everything below is computed from the half floats that the page has.
     OIIO::ImageBuf halves(OIIO::ImageSpec(result.width, result.height, 3, OIIO::TypeHalf));
     halves.set_pixels(halves.roi(), OIIO::TypeFloat, rgb.data());
     halves.get_pixels(halves.roi(), OIIO::TypeFloat, rgb.data());
     result.exr = encoded(rgb, result.width, result.height, "light.exr", OIIO::TypeHalf);
-    for (const ResolvedOperator& op : options.local_operators) {
+    for (const ResolvedOperator& op : request.local_operators) {
         TonemapOptions tonemap_options;
         tonemap_options.op = op;
         tonemap_options.input = "lin_rec709";

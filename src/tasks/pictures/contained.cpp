@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/pictures/contained.h"
+#include "tasks/pictures/contained.h"
 
+#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
@@ -15,14 +16,11 @@
 #include <csignal>
 #include <cstring>
 #include <exception>
-#include <new>
 #include <optional>
-#include <stdexcept>
 #include <string_view>
 
-#include "base/strings.h"
+#include "base/problem.h"
 #include "base/system_files.h"
-#include "cli/messages.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -30,10 +28,34 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Message of a process: this byte and the value, or one with the kind of a problem and its text.
+/// Message of a process: this byte and the value, or the digit of a problem's kind and its texts,
+/// each with a zero byte behind it.
 constexpr char kNoProblem = '-';
+
+template <class AnyProblem>
+auto texts_of(AnyProblem& problem) {
+    return std::array{&problem.what, &problem.parameter, &problem.value, &problem.expected,
+                      &problem.suggestion};
+}
+
 std::string message(const Problem& problem) {
-    return static_cast<char>('0' + static_cast<int>(problem.kind)) + one_line(problem.what);
+    std::string bytes(1, static_cast<char>('0' + static_cast<int>(problem.kind)));
+    for (const std::string* text : texts_of(problem)) {
+        bytes += text->substr(0, text->find('\0'));
+        bytes += '\0';
+    }
+    return bytes;
+}
+
+Problem problem_in(std::string_view bytes) {
+    Problem problem{.kind = static_cast<Problem::Kind>(bytes.front() - '0')};
+    bytes.remove_prefix(1);
+    for (std::string* text : texts_of(problem)) {
+        const std::size_t end = std::min(bytes.find('\0'), bytes.size());
+        *text = bytes.substr(0, end);
+        bytes.remove_prefix(std::min(end + 1, bytes.size()));
+    }
+    return problem;
 }
 
 ContainedResult file_failure(const std::string& name, const std::string& reason) {
@@ -52,7 +74,7 @@ ContainedResult file_failure(const std::string& name, const std::string& reason)
     try {
         text = kNoProblem + work(item);
     } catch (const std::exception& e) {
-        text = message(command_problem(e));
+        text = message(problem_of(e));
     }
     std::string_view left = text;
     while (!left.empty()) {
@@ -118,10 +140,8 @@ ContainedResult result_of(const Process& process, const std::string& name) {
         return file_failure(
             name, fmt::format("the process ended early (exit code {})", WEXITSTATUS(status)));
     }
-    const std::string rest = process.text.substr(1);
-    if (process.text.front() == kNoProblem) return {.value = rest};
-    const auto kind = static_cast<Problem::Kind>(process.text.front() - '0');
-    return {.problem = Problem{.kind = kind, .what = rest}};
+    if (process.text.front() == kNoProblem) return {.value = process.text.substr(1)};
+    return {.problem = problem_in(process.text)};
 }
 
 /// A process that waits for a device may outlive even this; then it is abandoned.
@@ -134,8 +154,10 @@ void kill_process(const Process& process) {
 
 }  // namespace
 
-void ContainedResult::require() const {
-    if (problem) throw_problem(*problem);
+void set_picture_threads(int count) {
+    OIIO::attribute("threads", count);
+    // OpenEXR has threads of its own; there, 0 is all cores and less is none.
+    OIIO::attribute("exr_threads", count == 1 ? -1 : count);
 }
 
 void run_contained(const std::vector<std::string>& names, std::size_t jobs, double seconds,
@@ -177,7 +199,7 @@ void run_contained(const std::vector<std::string>& names, std::size_t jobs, doub
             const std::string& name = names[process.item];
             done(process.item, is_ended ? result_of(process, name)
                                         : file_failure(name, fmt::format("no result after {} s "
-                                                                         "(--timeout)",
+                                                                         "(<<timeout>>)",
                                                                          seconds)));
         }
         running = std::move(others);

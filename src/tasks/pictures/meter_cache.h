@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "cli/json.h"
+#include "tasks/json.h"
 #include "tonewright/meter.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -12,15 +12,23 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// The processors and the time for pictures.
+struct PictureWork {
+    /// For all pictures together. 0: all cores.
+    int threads = 0;
+    /// Seconds for each picture, which then has its own process. 0: no limit, and no process.
+    double timeout = 0;
+};
+
+/// Sets the number of threads of OpenImageIO and OpenEXR; 0: all cores.
+void set_picture_threads(int count);
+
 /// Result of work in a separate process.
 struct ContainedResult {
     /// The result of the work.
     std::string value = {};
-    /// The work's exception, in the words of the command; of kind `file` for a crash and a timeout.
+    /// The problem of the work's exception; of kind `file` for a crash and a timeout.
     std::optional<Problem> problem = {};
-
-    /// Throws the problem in this process.
-    void require() const;
 };
 
 /// Runs pieces of work, each in its own process, so that a crash or a hang in a reader does not

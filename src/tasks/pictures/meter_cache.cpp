@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/pictures/meter_cache.h"
+#include "tasks/pictures/meter_cache.h"
 
 #include <fmt/format.h>
 
@@ -192,7 +192,7 @@ MeterCache::MeterCache(std::string path, const MeterOptions& options)
             if (is_possible(known.metering, options)) entries_[picture] = std::move(known);
         }
     } catch (const JsonError&) {
-        fail("is not a meter cache; expected a file that --meter-cache wrote, or a new name");
+        fail("is not a meter cache; expected a file that <<meter_cache>> wrote, or a new name");
     }
 }
 

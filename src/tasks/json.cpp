@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/json.h"
+#include "tasks/json.h"
 
 #include <nlohmann/json.hpp>
 #include <type_traits>

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <memory>
 
-#include "base/atomic_file.h"
 #include "base/format_number.h"
-#include "base/input_file.h"
-#include "base/strings.h"
 #include "cli/elapsed_line.h"
 #include "cli/exact_forms.h"
 #include "cli/messages.h"
@@ -15,10 +11,8 @@
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
 #include "lut/display_code.h"
-#include "lut/lut_warnings.h"
 #include "lut/shipped_set.h"
-#include "ocio/lut_chain.h"
-#include "pipeline/stand_ins.h"
+#include "tasks/bake.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
@@ -29,12 +23,12 @@ namespace {
 struct Options : ViewOptions {
     std::string format;
     std::string file;
-    std::string encoding = "acescct";
+    std::string encoding = std::string(kDefaultLutEncoding);
     std::optional<int> size;
     bool one = false;
     bool three = false;
     std::optional<int> bits;
-    int icc_version = 2;
+    std::optional<int> icc_version;
     std::optional<int> decimals;
     std::optional<double> max_error;
     std::string nodes = "auto";
@@ -43,188 +37,73 @@ struct Options : ViewOptions {
     bool exact = false;
 };
 
-/// @throws Error  a file type that cannot store the numbers exactly: lossy, or of other depths
-void require_lut_picture(const std::string& path, int bits) {
-    const std::string extension = extension_of(path);
-    const bool is_tiff = extension == ".tif" || extension == ".tiff";
-    const bool is_held = is_tiff || (bits == 32 ? extension == ".exr" : extension == ".png");
-    if (!is_held) {
-        throw Error(fmt::format("bake: file is {}; expected {} or .tif for {} bits", path,
-                                bits == 32 ? ".exr" : ".png", bits));
-    }
-}
-
-/// The application's settings, unless the user gives others.
-void take_from_host(Options& options, const ResolvedOperator& op, const LutApplication& host,
-                    LutFormat format) {
+BakeRequest request_of(const Options& options) {
     const auto is_given = [&](const char* option) { return options.given.contains(option); };
-    if (!is_given("--display")) options.display = host.display;
-    if (!is_given("--input-encoding")) {
-        options.encoding = lut_encoding_of(host, format);
-        const bool is_chain = reads_chains(host, format);
-        if (!is_given("--input") && is_chain)
-            options.input = parse_input_encoding(options.encoding).default_input;
-        if (is_chain) return;  // it has sizes of its own
-        if (!is_given("--input")) options.input = lut_input_of(host, *op.op);
-    }
-    // A size counts the entries of a 1D table.
-    const bool is_table = options.one || (!options.three && is_table_for(host, options.view(op)));
-    if (options.size && !is_table && format == host.format) check_lut_size(host, *options.size);
-    if (is_given("--format")) return;  // another file than the application's own
-    if (is_given("--max-error") && is_strip(host.format)) {
-        throw Error(
-            fmt::format("bake: --max-error is given for {}; expected none, because its size is {}",
-                        host.id, host.size));
-    }
-    if (!is_given("--depth")) options.bits = host.bits;
-    if (is_table) return;
-    if (!is_given("--size") && !is_given("--max-error")) options.size = host.size;
-    options.three = true;
+    BakeRequest request;
+    request.file = options.file;
+    if (!options.host.empty()) request.application = &find_lut_application(options.host);
+    if (!options.format.empty()) request.format = parse_lut_format(options.format);
+    if (is_given("--input-encoding")) request.encoding = parse_input_encoding(options.encoding);
+    if (is_given("--input")) request.input = &find_input_space(options.input);
+    request.input_units = parse_input_units(options.input_units);
+    request.exposure_stops = options.exposure;
+    if (is_given("--display")) request.display = options.display;
+    request.reference_white = options.reference_white;
+    if (options.one) request.dimension = LutDimension::one;
+    if (options.three) request.dimension = LutDimension::three;
+    request.size = options.size;
+    request.depth = options.bits;
+    request.decimals = options.decimals;
+    request.icc_version = options.icc_version;
+    request.max_error = options.max_error;
+    request.nodes = parse_lut_nodes(options.nodes);
+    request.cache_folder = user_cache_folder();
+    request.write_picture = [](const auto&... arguments) {
+        picture_commands().write_lut(arguments...);
+    };
+    request.op = options.resolved();
+    return request;
 }
 
-void print_every_color(const std::string& file, const View& view, const LutError& error) {
-    print_result(
-        fmt::format("{}: on every color of its input, in {}: error max {}, 99.9 % {}, mean {}",
-                    file, is_light(view) ? "display-linear values" : "code values of 0 to 1",
-                    rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean)));
-}
-
-/// Replaces a word, if the text has it.
-std::string with_word(std::string text, std::string_view word, std::string_view by) {
-    if (const std::size_t at = text.find(word); at != std::string::npos)
-        text.replace(at, word.size(), by);
-    return text;
-}
-
-/// The application's instructions for this file. Names with characters that mean something in a
-/// shell or in a filter of ffmpeg stay FILE.
-std::string steps_for(const LutApplication& host, const LutRequest& request,
-                      const std::string& file) {
-    constexpr std::string_view kPlain =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-/";
-    const std::string& steps =
-        request.encoding.is_linear ? lut_steps_of(host, request.format) : host.steps;
-    const bool is_plain = file.find_first_not_of(kPlain) == std::string::npos;
-    return with_word(with_word(steps, "the file's primaries",
-                               find_input_space(request.view.input).primaries.name),
-                     "FILE", is_plain ? file : "FILE");
-}
-
-void print_steps(const LutApplication& host, const LutRequest& request, const std::string& file) {
-    if (request.view.display != host.display && !takes_any_display(host)) {
-        print_result(fmt::format("{}: these steps are for the display {}; the file is for {}",
-                                 host.title, host.display, request.view.display));
-    }
-    const bool has_its_encoding = request.encoding.id == parse_input_encoding(host.encoding).id;
-    if (has_usual_input(host, request) || (host.takes_any_primaries && has_its_encoding)) {
-        print_result(fmt::format("{}: {}", host.title, steps_for(host, request, file)));
-        return;
-    }
-    const std::string input =
-        "scene-linear " + with_word(find_input_space(request.view.input).title, "Linear ", "");
-    print_result(fmt::format(
-        "{}: convert {} before this file, which does not take the "
-        "application's usual input",
-        host.title,
-        request.encoding.is_linear ? "to " + input : input + " to " + request.encoding.title));
-}
-
-void bake_chain(const Options& options, const LutRequest& request, LutNodes nodes,
-                const LutApplication* host) {
-    const LutChain chain = [&] {
-        const ElapsedLine line("bake");
-        return make_lut_chain(request, nodes, user_cache_folder());
-    }();
-    const PhotographError& photographs = chain.error.photographs;
-    if (options.max_error && photographs.p999 > *options.max_error) {
-        throw Error(fmt::format(
-            "bake: max error is {}; expected at least {}, which {} has on "
-            "photographs",
-            shortest(*options.max_error), rounded_up(photographs.p999), chain.operations));
-    }
-    write_text_atomically(options.file, chain.contents);
-    print_result(fmt::format("{}: {}, scene-linear in ({}); on photographs {}", options.file,
-                             chain.operations, request.view.input, to_string(photographs)));
-    print_every_color(options.file, request.view, chain.error);
-    if (host) print_steps(*host, request, options.file);
-}
-
-void bake_one(Options& options) {
+void bake_one(const Options& options) {
     if (options.op.empty())
         throw Error(
             "bake: OPERATOR is missing; expected an id from `tonewright list`, or --all FOLDER");
     if (options.file.empty()) throw Error("bake: -o is missing; expected -o FILE");
-    // Reports the error before minutes of work, and before the check of the name.
-    if (const std::string why = why_no_file(options.file); !why.empty())
-        throw FileError(fmt::format("write: {}: {}", options.file, why));
-    const LutApplication* host =
-        options.host.empty() ? nullptr : &find_lut_application(options.host);
-    LutRequest request;
-    std::optional<LutFormat> format;
-    if (!options.format.empty()) format = parse_lut_format(options.format);
-    request.format = lut_format_of_file(options.file, format, host);
-    if (!options.given.contains("--input"))
-        options.input = parse_input_encoding(options.encoding).default_input;
-    const ResolvedOperator op = options.resolved();
-    if (host) take_from_host(options, op, *host, request.format);
-    request.encoding = parse_input_encoding(options.encoding);
-    request.view = options.view(op);
-    request.size = options.size;
-    request.bits = options.bits;
-    request.icc_version = options.icc_version;
-    if (options.given.contains("--icc-version") && request.format != LutFormat::icc)
-        throw Error(fmt::format("bake: --icc-version is given for {}; expected format icc with it",
-                                name_of(request.format)));
-    request.decimals = options.decimals;
-    if (options.one) request.dimension = LutDimension::one;
-    if (options.three) request.dimension = LutDimension::three;
-    LutNodes nodes = LutNodes::automatic;
-    if (options.nodes == "sampled") nodes = LutNodes::sampled;
-    if (options.nodes == "fitted") nodes = LutNodes::fitted;
-    if (options.nodes == "smooth") nodes = LutNodes::smooth;
-    const bool is_picture = is_picture_format(request.format);
-    if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
-    if (const std::string text = stand_in_warning(request.view.op, "LUT"); !text.empty())
-        warn(text);
-    if (is_lut_chain(request)) {
-        bake_chain(options, request, nodes, host);
-        return;
-    }
-    const BakedLut baked = [&] {
-        const ElapsedLine line("bake");
-        constexpr int kLargest = 129;
-        const bool is_for_host = host && request.format == host->format;
-        return bake_lut(request, nodes, interpolation_of(host), options.max_error,
-                        is_for_host ? host->largest_size : kLargest);
-    }();
-    const Lut& lut = baked.lut;
-    // The application's own input: nothing of it can be changed.
-    const LutApplication* own_host = host && has_usual_input(*host, request) ? host : nullptr;
-    const LutError& error = baked.error;
-    request.size = lut.size;
-    if (const std::string text = lut_warning(options.file, request, baked, own_host); !text.empty())
-        warn(text);
-    if (is_picture) {
-        picture_commands().write_lut(lut, request.format, options.file, request.bits.value_or(16));
+    const BakeRequest request = request_of(options);
+    const BakeResult result = with_elapsed_line(
+        "bake", [&](const Listener& listener) { return bake(request, listener); });
+    const View& view = result.request.view;
+    const Lut& lut = result.baked.lut;
+    const LutError& error = result.baked.error;
+    const std::string on_photographs = fmt::format(
+        "({}){}; on photographs {}", view.input,
+        result.operations.empty() ? fmt::format(", {} interpolation{}", error.interpolation,
+                                                result.baked.is_fitted ? ", fitted nodes" : "")
+                                  : "",
+        to_string(error.photographs));
+    if (!result.operations.empty()) {
+        print_result(fmt::format("{}: {}, scene-linear in {}", options.file, result.operations,
+                                 on_photographs));
     } else {
-        write_text_atomically(options.file, write_lut(baked, request));
+        print_result(fmt::format("{}: {}D, {} {}, {} in {}", options.file, lut.dimension, lut.size,
+                                 lut.dimension == 3 ? "a side" : "entries",
+                                 lut.is_half_domain ? "scene-linear" : result.request.encoding.id,
+                                 on_photographs));
     }
     print_result(fmt::format(
-        "{}: {}D, {} {}, {} in ({}), {} interpolation{}; on photographs {}", options.file,
-        lut.dimension, lut.size, lut.dimension == 3 ? "a side" : "entries",
-        lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
-        error.interpolation, baked.is_fitted ? ", fitted nodes" : "",
-        to_string(error.photographs)));
-    print_every_color(options.file, request.view, error);
-    const std::string clipped = to_string(measure_clipping(request, lut));
-    if (!clipped.empty()) {
-        print_result(fmt::format("{}: clips what {} would show {}", options.file,
-                                 request.view.op.label, clipped));
+        "{}: on every color of its input, in {}: error max {}, 99.9 % {}, mean {}", options.file,
+        is_light(view) ? "display-linear values" : "code values of 0 to 1", rounded_up(error.max),
+        rounded_up(error.p999), rounded_up(error.mean)));
+    if (const std::string clipped = to_string(result.clipping); !clipped.empty()) {
+        print_result(
+            fmt::format("{}: clips what {} would show {}", options.file, view.op.label, clipped));
     }
-    if (host) print_steps(*host, request, options.file);
+    for (const std::string& line : result.steps)
+        print_result(line);
 }
 
-int run_bake(Options& options) {
+int run_bake(const Options& options) {
     if (options.exact) {
         if (options.op.empty()) throw Error("bake: OPERATOR is missing; expected one with --exact");
         if (!options.file.empty() || !options.all.empty())
@@ -234,7 +113,7 @@ int run_bake(Options& options) {
         return kOk;
     }
     if (options.all.empty()) {
-        with_memory_for(options.file, [&] { bake_one(options); });
+        bake_one(options);
         return kOk;
     }
     if (!options.op.empty())
@@ -317,7 +196,7 @@ void add_bake(CommandLine& program) {
     command.add("--icc-version", options->icc_version, "version of a device link: 2 or 4")
         .value("N")
         .choices({2, 4})
-        .show_default()
+        .show_default("2")
         .group(table);
     command.common({"-o", "--for", "--format", "--all", "--set", "--look", "--exposure", "--input",
                     "--display", "--input-encoding", "--size", "--max-error"});

@@ -3,9 +3,13 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
+#include "cli/messages.h"
+#include "tasks/listener.h"
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -29,5 +33,16 @@ class ElapsedLine {
     bool is_ended_ = false;
     std::thread thread_;  // none where there is no terminal
 };
+
+/// Runs a task that takes a Listener, with such a line. Its warnings are printed.
+template <class Task>
+auto with_elapsed_line(const std::string& what, const Task& task) {
+    std::optional<ElapsedLine> line(std::in_place, what);
+    return task(Listener{.warn = [&](const std::string& text) {
+        line.reset();
+        warn(text);
+        line.emplace(what);
+    }});
+}
 
 TONEWRIGHT_NAMESPACE_END

@@ -47,6 +47,13 @@ Layout layout_of(const std::string& path, int width, int height) {
 
 }  // namespace
 
+void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits) {
+    OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
+    if (bits == 8) type = OIIO::TypeDesc::UINT8;
+    if (bits == 16) type = OIIO::TypeDesc::UINT16;
+    write_image_atomically(make_lut_picture(lut, format), path, type);
+}
+
 Lut read_lut_picture(const std::string& path) {
     {
         const auto in = open_picture(path);
@@ -110,13 +117,6 @@ OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
         }
     }
     return picture;
-}
-
-void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits) {
-    OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
-    if (bits == 8) type = OIIO::TypeDesc::UINT8;
-    if (bits == 16) type = OIIO::TypeDesc::UINT16;
-    write_image_atomically(make_lut_picture(lut, format), path, type);
 }
 
 TableReader picture_table_reader(TableReader next) {

@@ -15,8 +15,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// @throws Error  another format
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format);
 
-/// Writes such a picture to a file.
+/// Writes such a picture. An old file is replaced when the new one is complete.
 /// @param bits  8, 16 or 32 (float)
+/// @throws FileError  the file cannot be written
 TONEWRIGHT_API void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path,
                                       int bits);
 

@@ -23,17 +23,14 @@
 #include <utility>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/input_file.h"
 #include "base/strings.h"
 #include "image/lut_picture.h"
 #include "image/resize.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
-#include "lut/lut_warnings.h"
-#include "ocio/lut_chain.h"
-#include "pipeline/stand_ins.h"
 #include "shader_runs/shader_run.h"
+#include "tasks/bake.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/image_io.h"
@@ -91,6 +88,7 @@ constexpr MessageStyle kStyle = {
             return fmt::format("custom={{VIEW: \"{}\"}}", value);
         const std::string argument = argument_of(parameter);
         if (value == "yes") return argument + "=True";
+        if (parameter == "dimension") value = value.substr(0, 1);  // 3 of "3d"
         if (value.empty() || is_number(value)) return fmt::format("{}={}", argument, value);
         return fmt::format("{}=\"{}\"", argument, value);
     }};
@@ -449,87 +447,64 @@ py::dict describe(const ParityRow& row) {
 
 py::dict bake_file(const std::string& op, const std::string& file, const std::string& host,
                    const std::optional<std::string>& format,
-                   const std::optional<std::string>& input_encoding, std::optional<int> size,
-                   std::optional<int> depth, const std::string& cache,
+                   const std::optional<std::string>& input_encoding, std::optional<int> dimension,
+                   std::optional<int> size, std::optional<double> max_error,
+                   const std::string& nodes, std::optional<int> decimals, std::optional<int> depth,
+                   std::optional<int> icc_version, const std::string& cache,
                    const py::kwargs& arguments) {
-    TonemapOptions options = parse_color_options(op, arguments);
-    const LutApplication* reader = host.empty() ? nullptr : &find_lut_application(host);
-    LutRequest request;
-    std::optional<LutFormat> named;
-    if (format) named = parse_lut_format(*format);
-    if (const std::string why = why_no_file(file); !why.empty())
-        throw FileError(fmt::format("write: {}: {}", file, why));
-    request.format = lut_format_of_file(file, named, reader);
-    const std::string own_encoding = reader ? lut_encoding_of(*reader, request.format) : "acescct";
-    request.encoding = parse_input_encoding(input_encoding.value_or(own_encoding));
-    const bool is_own_encoding = reader && !input_encoding;
-    const bool is_chain = is_own_encoding && reads_chains(*reader, request.format);
-    if (is_same_name(options.input, kAutoInput)) {
-        options.input = is_own_encoding && !is_chain ? lut_input_of(*reader, *options.op.op)
-                                                     : request.encoding.default_input;
+    const TonemapOptions options = parse_color_options(op, arguments);
+    BakeRequest request;
+    request.file = file;
+    request.op = options.op;
+    if (!host.empty()) request.application = &find_lut_application(host);
+    if (format) request.format = parse_lut_format(*format);
+    if (input_encoding) request.encoding = parse_input_encoding(*input_encoding);
+    if (!is_same_name(options.input, kAutoInput)) request.input = &find_input_space(options.input);
+    request.input_units = options.input_units;
+    request.exposure_stops = options.exposure_stops;
+    if (arguments.contains("display")) request.display = options.display;
+    request.reference_white = options.reference_white;
+    if (dimension) {
+        request.dimension = find_choice("dimension", std::to_string(*dimension), {"1", "3"}) == 0
+                                ? LutDimension::one
+                                : LutDimension::three;
     }
-    if (reader && !arguments.contains("display")) options.display = reader->display;
-    request.view = make_view(options.op, options.input, options.exposure_stops, options.display,
-                             options.reference_white);
-    if (reader && !format && !is_chain) {
-        request.bits = reader->bits;
-        if (!is_table_for(*reader, request.view)) {
-            if (size) check_lut_size(*reader, *size);
-            request.size = reader->size;
-            request.dimension = LutDimension::three;
-        }
-    }
-    if (size) request.size = size;
-    if (depth) request.bits = depth;
-    if (const std::string text = stand_in_warning(request.view.op, "LUT"); !text.empty())
-        warn(text);
-    py::dict result;
-    LutError error;
-    std::string operations;
-    with_memory_for(file, [&] {
+    request.size = size;
+    request.depth = depth;
+    request.decimals = decimals;
+    request.icc_version = icc_version;
+    request.max_error = max_error;
+    request.nodes = parse_lut_nodes(nodes);
+    request.write_picture = write_lut_picture;
+    request.cache_folder = cache;
+    const BakeResult baked = [&] {
         const py::gil_scoped_release release;
-        if (is_lut_chain(request)) {
-            const LutChain chain = make_lut_chain(request, LutNodes::automatic, cache);
-            write_text_atomically(file, chain.contents);
-            error = chain.error;
-            operations = chain.operations;
-            return;
-        }
-        const BakedLut baked = bake_lut(request, LutNodes::automatic, interpolation_of(reader));
-        error = baked.error;
-        request.size = baked.lut.size;
-        request.dimension = baked.lut.dimension == 3 ? LutDimension::three : LutDimension::one;
-        if (const std::string text =
-                lut_warning(file, request, baked,
-                            reader && has_usual_input(*reader, request) ? reader : nullptr);
-            !text.empty())
-            warn(text);
-        if (is_picture_format(request.format)) {
-            const int bits = request.bits.value_or(16);
-            OIIO::TypeDesc type = OIIO::TypeFloat;
-            if (bits == 8) type = OIIO::TypeUInt8;
-            if (bits == 16) type = OIIO::TypeUInt16;
-            write_image_atomically(make_lut_picture(baked.lut, request.format), file, type);
-        } else {
-            write_text_atomically(file, write_lut(baked, request));
-        }
-    });
+        return bake(request, {.warn = warn});
+    }();
+    py::dict result;
     // A chain of operations has no one size.
-    if (operations.empty()) {
-        result["dimension"] = request.dimension == LutDimension::three ? 3 : 1;
-        result["size"] = *request.size;
+    if (baked.operations.empty()) {
+        result["dimension"] = baked.baked.lut.dimension;
+        result["size"] = baked.baked.lut.size;
     } else {
-        result["operations"] = operations;
+        result["operations"] = baked.operations;
     }
-    result["photographs"] = py::dict();
+    const LutError& error = baked.baked.error;
     const PhotographError& photographs = error.photographs;
-    result["photographs"]["p999"] = photographs.p999;
-    result["photographs"]["mean"] = photographs.mean;
-    result["photographs"]["above_one_code"] = photographs.share;
-    result["photographs"]["outside"] = photographs.outside;
+    py::dict on_photographs;
+    on_photographs["p999"] = photographs.p999;
+    on_photographs["mean"] = photographs.mean;
+    on_photographs["above_one_code"] = photographs.share;
+    on_photographs["outside"] = photographs.outside;
+    result["photographs"] = on_photographs;
     result["max_error"] = error.max;
     result["mean_error"] = error.mean;
     result["interpolation"] = error.interpolation;
+    result["clipped"] = to_string(baked.clipping);
+    py::list steps;
+    for (const std::string& line : baked.steps)
+        steps.append(render(line, kStyle));
+    result["steps"] = steps;
     return result;
 }
 
@@ -753,8 +728,9 @@ PYBIND11_MODULE(_tonewright, m) {
     m.def("displays", [] { return tw::describe_all(tw::all_displays()); });
     m.def("applications", [] { return tw::describe_all(tw::all_lut_applications()); });
     m.def("bake", &tw::bake_file, py::arg("op"), py::arg("file"), py::kw_only(), py::arg("host"),
-          py::arg("format"), py::arg("input_encoding"), py::arg("size"), py::arg("depth"),
-          py::arg("cache"));
+          py::arg("format"), py::arg("input_encoding"), py::arg("dimension"), py::arg("size"),
+          py::arg("max_error"), py::arg("nodes"), py::arg("decimals"), py::arg("depth"),
+          py::arg("icc_version"), py::arg("cache"));
     m.def("make_config", &tw::write_config);
     m.def("verify", &tw::verify_operators);
 }

@@ -259,11 +259,31 @@ def check_luts(report, tw, command, scratch):
     for options, words in (({"size": 17}, ["--size", "17"]),
                            ({"host": "resolve"}, ["--for", "resolve"]),
                            ({"format": "spi3d", "size": 17, "exposure": 1}, ["--format", "spi3d", "--size", "17",
-                                                                             "--exposure", "1"])):
-        a, b = (scratch / f"{name}.{options.get('format', 'cube')}" for name in "ab")
+                                                                             "--exposure", "1"]),
+                           ({"dimension": 3, "size": 17, "nodes": "sampled", "decimals": 5},
+                            ["--3d", "--size", "17", "--nodes", "sampled", "--decimals", "5"]),
+                           ({"dimension": 1, "input_encoding": "linear"}, ["--1d", "--input-encoding", "linear"]),
+                           ({"dimension": 3, "max_error": 0.1}, ["--3d", "--max-error", "0.1"]),
+                           ({"host": "photoshop", "format": "icc", "icc_version": 4, "size": 17},
+                            ["--for", "photoshop", "--format", "icc", "--icc-version", "4", "--size", "17"]),
+                           ({"host": "unity", "depth": 8, "format": "strip"},
+                            ["--for", "unity", "--depth", "8", "--format", "strip"])):
+        extension = options.get("format", "cube").replace("strip", "png")
+        a, b = (scratch / f"{name}.{extension}" for name in "ab")
         result = tw.bake("hable", str(a), **options)
-        run(command, "bake", "hable", "-o", b, *words)
+        said = subprocess.run([command, "bake", "hable", "-o", b, *words], capture_output=True, text=True, check=True).stderr
         report.check(f"bake {options}: the file of `bake`", a.read_bytes() == b.read_bytes(), str(result))
+        steps = [step.replace(str(a), str(b)) for step in result["steps"]]
+        report.check(f"bake {options}: the steps of `bake`", len(steps) == ("host" in options) and all(
+            step in said for step in steps) and result["clipped"] in said, (steps, said))
+    raises(report, "bake of another dimension", ValueError, "dimension is 2; expected 1 or 3",
+           lambda: tw.bake("hable", str(scratch / "a.cube"), dimension=2))
+    raises(report, "bake of a version without a link", ValueError, "icc_version is given for cube",
+           lambda: tw.bake("hable", str(scratch / "a.cube"), icc_version=4))
+    raises(report, "bake of a size and an error", ValueError, "size is 17; expected no size with max_error",
+           lambda: tw.bake("agx_sobotka", str(scratch / "a.cube"), size=17, max_error=0.1))
+    raises(report, "bake of a format without tables", ValueError, "dimension=1",
+           lambda: tw.bake("hable", str(scratch / "a.spi3d"), dimension=1))
     raises(report, "bake under another format's name", ValueError, "expected .cube",
            lambda: tw.bake("hable", str(scratch / "a.clf"), host="resolve"))
     raises(report, "bake under no format's name", ValueError, "expected .cube: the format is cube",

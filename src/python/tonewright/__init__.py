@@ -58,6 +58,10 @@ def _number(name: str, value: Any) -> float:
     return float(value)
 
 
+def _optional_index(value: Any) -> int | None:
+    return None if value is None else _operator.index(value)
+
+
 def _path(name: str, value: Any) -> str:
     return _text(name, _os.fsdecode(value))
 
@@ -229,30 +233,46 @@ def applications() -> list[dict[str, Any]]:
 
 
 def bake(op: str, file: Path, *, host: str = "", format: str | None = None, input_encoding: str | None = None,
-         size: int | None = None, depth: int | None = None, settings: Mapping[str, Any] | None = None, exposure: float = 0,
-         input: str = "auto", display: str | None = None, look: str = "", reference_white: float = 100,
+         dimension: int | None = None, size: int | None = None, max_error: float | None = None, nodes: str = "auto",
+         decimals: int | None = None, depth: int | None = None, icc_version: int | None = None,
+         settings: Mapping[str, Any] | None = None, exposure: float = 0, input: str = "auto", display: str | None = None,
+         look: str = "", reference_white: float = 100, input_units: str = "relative",
          cache: Path | None = None) -> dict[str, Any]:
-    """Write an operator as a LUT file and return its size and measured error.
+    """Write an operator as a LUT file, as `tonewright bake` does. Return its size and measured error.
 
     file: replaced only when the new file is complete.
     host: id of the application that reads it, see applications(); sets format, size, input and display.
-    format, input_encoding, size, depth: as the options of `tonewright bake`.
+    format, input_encoding: as the options of `tonewright bake` (default: by the host or the extension; "acescct").
+    dimension: 1, for views that are one curve for each channel, or 3 (default: 1 where that is exact).
+    size: grid points a side, [17, 129] in most formats, or entries of a 1D table, [2, 65536].
+    max_error: instead of a size: take the smallest up to 129 whose error on photographs (99.9 %), in code values, is at most
+    this.
+    nodes: values at grid points: "auto" (best on photographs), "sampled", "fitted" or "smooth".
+    decimals: of the numbers in a .cube file, [3, 9] (default: all digits of a float).
+    depth: bits of a value: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl.
+    icc_version: version of a device link, 2 (default) or 4.
+    input_units: as tonemap().
     cache: as make_config(), for a clf or ctf of scene-linear input.
 
     The result has dimension and size, or operations (of a clf or ctf of scene-linear input), interpolation, max_error and
-    mean_error (of every color of the input, code values), and photographs: p999 and mean (99.9 % and mean of the pixels of photographs, code values), above_one_code (share of the
-    pixels with an error above 1/255) and outside (share that is brighter or more saturated than the input holds).
+    mean_error (of every color of the input, code values), and photographs: p999 and mean (99.9 % and mean of the pixels of
+    photographs, code values), above_one_code (share of the pixels with an error above 1/255) and outside (share that is
+    brighter or more saturated than the input holds). clipped tells which stops the input cuts off and the operator would
+    show ("": none), and steps, a list of lines, how the host loads the file.
 
     Example: tonewright.bake("agx_blender", "agx.cube", host="resolve")
     """
     options = _options(settings, exposure, input, "srgb" if display is None else display, look, reference_white)
+    options["input_units"] = _text("input_units", input_units)
     if display is None:
         del options["display"]
     return _tonewright.bake(_text("op", op), _path("file", file), host=_text("host", host),
                             format=None if format is None else _text("format", format),
                             input_encoding=None if input_encoding is None else _text("input_encoding", input_encoding),
-                            size=None if size is None else _operator.index(size),
-                            depth=None if depth is None else _operator.index(depth), cache=_cache(cache), **options)
+                            dimension=_optional_index(dimension), size=_optional_index(size),
+                            max_error=None if max_error is None else _number("max_error", max_error),
+                            nodes=_text("nodes", nodes), decimals=_optional_index(decimals), depth=_optional_index(depth),
+                            icc_version=_optional_index(icc_version), cache=_cache(cache), **options)
 
 
 def make_config(folder: Path, *, views: Iterable[str] = (), displays: Iterable[str] = (), looks: Iterable[str] = (),

@@ -405,6 +405,198 @@ ExtendedConfig reduce(const ConfigLocation& location) {
     return result;
 }
 
+/// The config that gets the views.
+struct Host {
+    std::string path;
+    AnyConfig any;
+    OCIO::ConstColorSpaceRcPtr scene;
+    OCIO::ConstColorSpaceRcPtr display;
+    std::vector<HostDisplay> displays;
+    std::string active_views;
+    bool has_folder = false;
+    std::map<std::string, std::vector<float>> pictures;
+};
+
+/// @param displays  empty: all that Tonewright knows
+Host read_host(const std::string& path, const std::string& text,
+               const std::vector<std::string>& displays) {
+    Host host;
+    host.path = path;
+    host.any = read_any_config(path, text);
+    const OCIO::Config& config = *host.any.config;
+    for (int i = 0; i < config.getNumSearchPaths(); ++i)
+        host.has_folder =
+            host.has_folder || std::string_view(config.getSearchPath(i)) == kAddedFolder;
+    host.active_views = config.getActiveViews();
+    host.scene = interchange_space(host.any, path, "aces_interchange", "ACES2065-1");
+    host.display = interchange_space(host.any, path, "cie_xyz_d65_interchange", "CIE XYZ D65");
+    require_valid(config, path);
+    host.pictures = pictures_of(host.any.config);
+    host.displays = match_displays(host.any, path, displays);
+    if (host.displays.empty()) {
+        throw FileError(
+            path +
+            " has no display that Tonewright knows with a view transform; expected sRGB, Display "
+            "P3, Rec.1886, Rec.2020, 2.2, PQ or HLG");
+    }
+    return host;
+}
+
+ConfigModel model_for(const Host& host, ConfigOptions options) {
+    options.displays.clear();
+    for (const HostDisplay& display : host.displays)
+        options.displays.push_back(display.ours->id);
+    return make_config_model(options);
+}
+
+/// Existing entries are never replaced.
+void refuse_existing(const Host& host, const ConfigModel& model) {
+    const OCIO::Config& config = *host.any.config;
+    const auto refuse = [&](const std::string& what, const std::string& name) {
+        throw Error(Problem{.value = host.path + " has " + what + " " + name + " already",
+                            .expected = "another name (<<custom=ID>> <<name=NAME>>)"});
+    };
+    for (const auto& look : model.looks) {
+        if (config.getLook(look.name.c_str())) refuse("a look", look.name);
+    }
+    for (const auto& view : model.views) {
+        for (const DisplayedView& shown : displayed_views(view, model.displays)) {
+            if (config.getViewTransform(shown.transform.c_str()))
+                refuse("a view transform", shown.transform);
+            for (const HostDisplay& display : host.displays) {
+                if (display.ours != shown.display) continue;
+                if (has_view(config, display.name, shown.name))
+                    refuse("on the display " + display.name + " a view", shown.name);
+                const std::string space = output_space_name(shown.name, display.name);
+                if (config.getColorSpace(space.c_str())) refuse("a space", space);
+            }
+        }
+    }
+}
+
+/// Names of what is added.
+struct Additions {
+    std::vector<std::string> transforms;
+    std::vector<std::string> looks;
+    std::vector<std::string> views;  // with their displays
+    std::vector<std::string> spaces;
+    std::vector<std::string> active_views;
+};
+
+/// Inserts the views of the display into the text.
+void insert_views(YamlText& yaml, const YAML::Node& made, const HostDisplay& display,
+                  const Host& host, const ConfigModel& model, const ConfigBuilder& builder,
+                  Additions& added) {
+    const auto note = [](std::vector<std::string>& names, const std::string& name) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    const std::string listed = ", " + host.active_views + ",";
+    std::vector<std::string> views;
+    for (const auto& view : model.views) {
+        for (const DisplayedView& shown : builder.displayed(view.name)) {
+            if (shown.display != display.ours) continue;
+            note(added.transforms, shown.transform);
+            views.push_back(shown.name);
+            added.views.push_back(fmt::format("{} on {}", shown.name, display.name));
+            added.spaces.push_back(output_space_name(shown.name, display.name));
+            if (listed.find(", " + shown.name + ",") == std::string::npos)
+                note(added.active_views, shown.name);
+        }
+    }
+    yaml.append(yaml.root()["displays"][display.name],
+                named(made["displays"][display.name], views));
+}
+
+/// Writes the text of the config with its views, and the record of the insertions.
+void insert(const std::string& text, const Host& host, const ConfigModel& model,
+            const ConfigBuilder& builder, ExtendedConfig& result, AddedRecord& record) {
+    YamlText yaml(text);
+    const YAML::Node made = YAML::Load(builder.text());
+    Additions added;
+    for (const HostDisplay& display : host.displays)
+        insert_views(yaml, made, display, host, model, builder, added);
+    for (const auto& look : model.looks)
+        added.looks.push_back(look.name);
+    append_or_add(yaml, "view_transforms", named(made["view_transforms"], added.transforms));
+    append_or_add(yaml, "looks", named(made["looks"], added.looks));
+    append_or_add(yaml, "colorspaces", named(made["colorspaces"], added.spaces));
+    if (!host.active_views.empty()) append_names(yaml, "active_views", ", ", added.active_views);
+    if (!yaml.root()["search_path"]) {
+        yaml.add_text("search_path", kAddedFolder);
+    } else if (!host.has_folder) {
+        append_names(yaml, "search_path", ":", {kAddedFolder});
+    }
+    result.text = yaml.result();
+    record.add(yaml.insertions(), result.text);
+    result.added = {{"view", added.views},
+                    {"view transform", added.transforms},
+                    {"look", added.looks},
+                    {"color space", added.spaces}};
+}
+
+/// Mean errors that the approximations of the views may have, by the view's name and the display's
+/// id.
+using MeanBounds = std::map<std::string, double>;
+
+MeanBounds mean_bounds(const ConfigModel& model, const ConfigBuilder& builder) {
+    MeanBounds all;
+    for (const auto& view : model.views) {
+        for (const DisplayedView& shown : builder.displayed(view.name))
+            all[view.name + shown.display->id] =
+                builder.largest_errors().at(view.name).at(shown.display->title);
+    }
+    return all;
+}
+
+/// Errors of the view on the display of the written config.
+ExtendedView measure_view(const OCIO::ConstConfigRcPtr& made, const HostDisplay& display,
+                          const ConfigModel::View& view, const InputSpace& input,
+                          const std::vector<float>& colors, double bound) {
+    const View shown = make_view(view.op, input.id, view.exposure_stops, display.ours->id);
+    const std::string name = config_view_name(view.name, shown.op, *display.ours);
+    std::vector<double> truth(colors.size());
+    ReferenceEngine(build_view(shown)).run_rgb(colors.data(), truth.data(), colors.size() / 3);
+    const std::vector<float> codes =
+        run_processor(made->getProcessor(scene_to_view(input, display.name, name)), colors);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < codes.size(); i += 3)
+        errors.push_back(channel_error(&truth[i], &codes[i]));
+    const ErrorStats stats = summarise(errors);
+    // Displays of other configs are less accurate than ours, above all near black. Refuse another
+    // picture, not a less accurate one.
+    constexpr double kAnother = 0.02;
+    if (stats.mean > kAnother + bound) {
+        throw FileError(
+            fmt::format("view {} on {} would differ from the reference by {:.2g} on "
+                        "average; expected at most 0.02 more than its bound",
+                        name, display.name, stats.mean));
+    }
+    return {display.name, name, stats.max, stats.p999};
+}
+
+std::vector<ExtendedView> measure_views(const OCIO::ConstConfigRcPtr& made,
+                                        const std::vector<HostDisplay>& displays,
+                                        const ConfigModel& model, const MeanBounds& bounds) {
+    // The same colors as for the errors of Tonewright's own config. In AP0, colors at the edge of
+    // Rec.709 would measure the float32 rounding of a matrix instead.
+    const InputSpace& input = find_input_space("lin_rec709");
+    const SampleSet samples = make_sample_set(input, {5, 4000});
+    std::vector<float> colors;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (samples.is_non_negative(i) && samples.kind[i] != SampleKind::special)
+            colors.insert(colors.end(), &samples.rgb[3 * i], &samples.rgb[3 * i] + 3);
+    }
+    std::vector<ExtendedView> views;
+    for (const auto& view : model.views) {
+        for (const HostDisplay& display : displays) {
+            if (!view.is_on(*display.ours)) continue;
+            views.push_back(measure_view(made, display, view, input, colors,
+                                         bounds.at(view.name + display.ours->id)));
+        }
+    }
+    return views;
+}
+
 /// @param replaced  the record of an earlier run that this one replaces
 ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
                       ConfigOptions options, AddedRecord record,
@@ -416,109 +608,25 @@ ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
     record.custom.clear();
     for (const ConfigOptions::CustomView& view : options.custom)
         record.custom.push_back({view.name, operator_text(view.op)});
-    const AnyConfig any = read_any_config(path, text);
-    const OCIO::ConfigRcPtr& config = any.config;
-    bool has_folder = false;
-    for (int i = 0; i < config->getNumSearchPaths(); ++i)
-        has_folder = has_folder || std::string_view(config->getSearchPath(i)) == kAddedFolder;
-    const std::string original_active_views = config->getActiveViews();
-    const auto scene = interchange_space(any, path, "aces_interchange", "ACES2065-1");
-    const auto display = interchange_space(any, path, "cie_xyz_d65_interchange", "CIE XYZ D65");
-    require_valid(*config, path);
-    const std::map<std::string, std::vector<float>> before = pictures_of(config);
-    const std::vector<HostDisplay> hosts = match_displays(any, path, options.displays);
-    if (hosts.empty()) {
-        throw FileError(
-            path +
-            " has no display that Tonewright knows with a view transform; expected sRGB, Display "
-            "P3, Rec.1886, Rec.2020, 2.2, PQ or HLG");
-    }
-    ConfigOptions chosen = options;
-    chosen.displays.clear();
-    for (const HostDisplay& host : hosts)
-        chosen.displays.push_back(host.ours->id);
-    const ConfigModel model = make_config_model(chosen);
-
-    // Never replace existing entries.
-    const auto refuse = [&](const std::string& what, const std::string& name) {
-        throw Error(Problem{.value = path + " has " + what + " " + name + " already",
-                            .expected = "another name (<<custom=ID>> <<name=NAME>>)"});
-    };
-    for (const auto& look : model.looks) {
-        if (config->getLook(look.name.c_str())) refuse("a look", look.name);
-    }
-    for (const auto& view : model.views) {
-        for (const DisplayedView& shown : displayed_views(view, model.displays)) {
-            if (config->getViewTransform(shown.transform.c_str()))
-                refuse("a view transform", shown.transform);
-            for (const HostDisplay& host : hosts) {
-                if (host.ours != shown.display) continue;
-                if (has_view(*config, host.name, shown.name))
-                    refuse("on the display " + host.name + " a view", shown.name);
-                const std::string space = output_space_name(shown.name, host.name);
-                if (config->getColorSpace(space.c_str())) refuse("a space", space);
-            }
-        }
-    }
+    const Host host = read_host(path, text, options.displays);
+    const ConfigModel model = model_for(host, options);
+    refuse_existing(host, model);
 
     // The folder may hold tables of another release that another config needs.
-    ConfigBuilder builder(model, config, LutFiles(kAddedFolder, LutFiles::Names::hashed));
-    builder.set_references(scene, display);
+    ConfigBuilder builder(model, host.any.config, LutFiles(kAddedFolder, LutFiles::Names::hashed));
+    builder.set_references(host.scene, host.display);
     builder.add_view_transforms();
     builder.add_looks();
-    for (const HostDisplay& host : hosts)
-        builder.add_views_to(*host.ours, host.name, host.space);
+    for (const HostDisplay& display : host.displays)
+        builder.add_views_to(*display.ours, display.name, display.space);
 
     ExtendedConfig result;
     result.path = path;
-    result.unchecked = describe_unchecked(any, path);
+    result.unchecked = describe_unchecked(host.any, path);
     result.warnings = config_warnings(model);
     result.files = builder.tables();
     try {
-        YamlText yaml(text);
-        const YAML::Node made = YAML::Load(builder.text());
-        std::vector<std::string> transforms;
-        std::vector<std::string> looks;
-        std::vector<std::string> all_views;
-        std::vector<std::string> spaces;
-        std::vector<std::string> active;
-        const auto note = [](std::vector<std::string>& names, const std::string& name) {
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-        };
-        const std::string listed = ", " + original_active_views + ",";
-        for (const HostDisplay& host : hosts) {
-            std::vector<std::string> views;
-            for (const auto& view : model.views) {
-                for (const DisplayedView& shown : builder.displayed(view.name)) {
-                    if (shown.display != host.ours) continue;
-                    note(transforms, shown.transform);
-                    views.push_back(shown.name);
-                    all_views.push_back(fmt::format("{} on {}", shown.name, host.name));
-                    spaces.push_back(output_space_name(shown.name, host.name));
-                    if (listed.find(", " + shown.name + ",") == std::string::npos)
-                        note(active, shown.name);
-                }
-            }
-            yaml.append(yaml.root()["displays"][host.name],
-                        named(made["displays"][host.name], views));
-        }
-        for (const auto& look : model.looks)
-            looks.push_back(look.name);
-        append_or_add(yaml, "view_transforms", named(made["view_transforms"], transforms));
-        append_or_add(yaml, "looks", named(made["looks"], looks));
-        append_or_add(yaml, "colorspaces", named(made["colorspaces"], spaces));
-        if (!original_active_views.empty()) append_names(yaml, "active_views", ", ", active);
-        if (!yaml.root()["search_path"]) {
-            yaml.add_text("search_path", kAddedFolder);
-        } else if (!has_folder) {
-            append_names(yaml, "search_path", ":", {kAddedFolder});
-        }
-        result.text = yaml.result();
-        record.add(yaml.insertions(), result.text);
-        result.added = {{"view", all_views},
-                        {"view transform", transforms},
-                        {"look", looks},
-                        {"color space", spaces}};
+        insert(text, host, model, builder, result, record);
     } catch (const YAML::Exception& e) {
         throw FileError("read: " + path + ": " + one_line(e.what()));
     }
@@ -529,56 +637,10 @@ ExtendedConfig extend(const ConfigLocation& location, const std::string& text,
     result.record = {AddedRecord::path_of(path), record.text(result.text)};
     if (replaced) result.unused_files = obsolete(location, *replaced, record.files);
     result.missing_links = folders_to_link(location, result.unused_files);
-    result.check = [before, hosts, model, path, bounds = [&] {
-        std::map<std::string, double> all;
-        for (const auto& view : model.views) {
-            for (const DisplayedView& shown : builder.displayed(view.name))
-                all[view.name + shown.display->id] =
-                    builder.largest_errors().at(view.name).at(shown.display->title);
-        }
-        return all;
-    }()](const std::string& written) {
+    result.check = [path, model, pictures = host.pictures, displays = host.displays,
+                    bounds = mean_bounds(model, builder)](const std::string& written) {
         return reading(path, [&] {
-            const OCIO::ConfigRcPtr made = check_result(path, written, before);
-            std::vector<ExtendedView> views;
-            // The same colors as for the errors of Tonewright's own config. In AP0, colors at the
-            // edge of Rec.709 would measure the float32 rounding of a matrix instead.
-            const InputSpace& input = find_input_space("lin_rec709");
-            const SampleSet samples = make_sample_set(input, {5, 4000});
-            for (const auto& view : model.views) {
-                for (const HostDisplay& host : hosts) {
-                    if (!view.is_on(*host.ours)) continue;
-                    const View shown =
-                        make_view(view.op, input.id, view.exposure_stops, host.ours->id);
-                    const std::string name = config_view_name(view.name, shown.op, *host.ours);
-                    std::vector<float> in;
-                    for (std::size_t i = 0; i < samples.size(); ++i) {
-                        if (samples.is_non_negative(i) && samples.kind[i] != SampleKind::special)
-                            in.insert(in.end(), &samples.rgb[3 * i], &samples.rgb[3 * i] + 3);
-                    }
-                    std::vector<double> truth(in.size());
-                    ReferenceEngine(build_view(shown))
-                        .run_rgb(in.data(), truth.data(), in.size() / 3);
-                    const std::vector<float> codes = run_processor(
-                        made->getProcessor(scene_to_view(input, host.name, name)), in);
-                    std::vector<double> errors;
-                    for (std::size_t i = 0; i < codes.size() / 3; ++i)
-                        errors.push_back(channel_error(&truth[3 * i], &codes[3 * i]));
-                    const ErrorStats stats = summarise(errors);
-                    views.push_back({host.name, name, stats.max, stats.p999});
-                    // Displays of other configs are less accurate than ours, above all near black.
-                    // Refuse another picture, not a less accurate one.
-                    constexpr double kAnother = 0.02;
-                    if (stats.mean > kAnother + bounds.at(view.name + host.ours->id)) {
-                        throw FileError(
-                            fmt::format("view {} on {} would differ from the reference by "
-                                        "{:.2g} on average; expected at "
-                                        "most 0.02 more than its bound",
-                                        name, host.name, stats.mean));
-                    }
-                }
-            }
-            return views;
+            return measure_views(check_result(path, written, pictures), displays, model, bounds);
         });
     };
     return result;

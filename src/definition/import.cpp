@@ -300,18 +300,34 @@ class NotFinite : public FormulaError {
     using FormulaError::FormulaError;
 };
 
-ImportedShader imported(std::string_view text, const std::string& name,
-                        const ShaderImport& settings, bool limits_powers) {
-    GlslSettings read;
-    read.function = settings.function;
-    read.limits_powers = limits_powers;
-    for (const auto& [key, parameter] : settings.parameters)
-        read.parameters.emplace(key, parameter.value);
-    const Stages made(parse_glsl(text, read));
-    const GlslFunction& function = made.function();
-    const Output output = settings.output.value_or(Output::display_linear);
+/// Adds the parameters of the function, with those values and limits of them that the settings
+/// have.
+void add_parameters(Operator& op, const GlslFunction& function, const ShaderImport& settings) {
+    std::vector<std::string> known;
+    for (const GlslParameter& parameter : function.parameters) {
+        if (op.parameters.size() == kMostNames) {
+            throw FormulaError(parameter.at,
+                               "function has " + std::to_string(function.parameters.size()) +
+                                   " parameters; expected at most " + std::to_string(kMostNames));
+        }
+        const std::string why = why_no_parameter(parameter.name, op.parameters);
+        if (!why.empty()) throw FormulaError(parameter.at, why);
+        const auto set = settings.parameters.find(parameter.name);
+        op.parameters.push_back(parameter_of(
+            parameter, set == settings.parameters.end() ? ImportedParameter{} : set->second));
+        known.push_back(parameter.name);
+    }
+    for (const auto& [key, parameter] : settings.parameters) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        throw Error("import: <<parameter>> is " + printable(key) + "; expected " +
+                    (known.empty() ? "none: the function has no further argument or uniform"
+                                   : join_choices(known) + did_you_mean(key, known)));
+    }
+}
 
-    const auto recipe = std::make_shared<OperatorRecipe>();
+/// The operator without its functions.
+Operator described(const GlslFunction& function, const std::string& name,
+                   const ShaderImport& settings) {
     const auto& all = named_primaries();
     std::vector<std::string> names;
     names.reserve(all.size());
@@ -326,33 +342,19 @@ ImportedShader imported(std::string_view text, const std::string& name,
     const std::string type = function.is_color ? "vec3" : "float";
     op.source = file + ": " + type + " " + op.title + "(" + type + ")";
     op.negatives = "clamped at 0 before the function";
-    for (const GlslParameter& parameter : function.parameters) {
-        if (op.parameters.size() == kMostNames) {
-            throw FormulaError(parameter.at,
-                               "function has " + std::to_string(function.parameters.size()) +
-                                   " parameters; expected at most " + std::to_string(kMostNames));
-        }
-        const std::string why = why_no_parameter(parameter.name, op.parameters);
-        if (!why.empty()) throw FormulaError(parameter.at, why);
-        const auto set = settings.parameters.find(parameter.name);
-        op.parameters.push_back(parameter_of(
-            parameter, set == settings.parameters.end() ? ImportedParameter{} : set->second));
-    }
-    for (const auto& [key, parameter] : settings.parameters) {
-        std::vector<std::string> known;
-        for (const GlslParameter& own : function.parameters)
-            known.push_back(own.name);
-        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-        throw Error("import: <<parameter>> is " + printable(key) + "; expected " +
-                    (known.empty() ? "none: the function has no further argument or uniform"
-                                   : join_choices(known) + did_you_mean(key, known)));
-    }
-    recipe->parameters = op.parameters;
+    add_parameters(op, function, settings);
+    return op;
+}
 
+/// A clamp of the input, the stages of the function, and those of its output.
+std::shared_ptr<const OperatorRecipe> recipe_of(const Stages& made, Operator& op, Output output) {
+    const auto recipe = std::make_shared<OperatorRecipe>();
+    const TextPosition at = made.function().at;
+    recipe->parameters = op.parameters;
     StageRecipe limit;
     limit.kind = Kind::clamp;
     limit.hi = kHalfMax;
-    limit.at = function.at;
+    limit.at = at;
     recipe->stages = made.stages();
     recipe->names = made.names();
     recipe->stages.insert(recipe->stages.begin(), limit);
@@ -360,17 +362,47 @@ ImportedShader imported(std::string_view text, const std::string& name,
         StageRecipe decode;
         decode.kind = Kind::curve;
         decode.f = {srgb_decode(Expr::input())};
-        decode.at = function.at;
+        decode.at = at;
         recipe->stages.push_back(decode);
     } else if (output != Output::display_linear) {
         op.output = OutputKind::code_value;
         op.code_power = output == Output::gamma22 ? 2.2 : 2.4;
     }
     if (recipe->stages.size() > kMostStages) {
-        throw FormulaError(function.at,
-                           "function becomes " + std::to_string(recipe->stages.size()) +
-                               " stages; expected at most " + std::to_string(kMostStages));
+        throw FormulaError(at, "function becomes " + std::to_string(recipe->stages.size()) +
+                                   " stages; expected at most " + std::to_string(kMostStages));
     }
+    return recipe;
+}
+
+/// Warnings about assumptions; the definition states the others.
+void add_warnings(ImportedShader& result, const GlslFunction& function,
+                  const ShaderImport& settings, bool limits_powers) {
+    const std::string title = "function " + printable(function.name);
+    if (const std::string encoding = encoding_of(function); !settings.output && !encoding.empty()) {
+        result.warnings.push_back(title + " " + encoding +
+                                  ", so its result may be encoded; expected what it is: linear, "
+                                  "srgb, gamma22 or gamma24");
+    }
+    if (limits_powers) {
+        result.warnings.push_back(title +
+                                  " has powers or square roots of negatives, which GLSL does not "
+                                  "define; here they are 0");
+    }
+}
+
+ImportedShader imported(std::string_view text, const std::string& name,
+                        const ShaderImport& settings, bool limits_powers) {
+    GlslSettings read;
+    read.function = settings.function;
+    read.limits_powers = limits_powers;
+    for (const auto& [key, parameter] : settings.parameters)
+        read.parameters.emplace(key, parameter.value);
+    const Stages made(parse_glsl(text, read));
+    const GlslFunction& function = made.function();
+    const Output output = settings.output.value_or(Output::display_linear);
+    Operator op = described(function, name, settings);
+    const auto recipe = recipe_of(made, op, output);
     // resolve() makes its own message of what build() throws.
     const auto wrong = std::make_shared<std::string>();
     op.build = [recipe, wrong](const Params& params) {
@@ -382,26 +414,14 @@ ImportedShader imported(std::string_view text, const std::string& name,
             throw;
         }
     };
-
     ImportedShader result;
     result.function = function.name;
     result.others = function.others;
-    if (!settings.output) {
-        const std::string encoding = encoding_of(function);
-        if (!encoding.empty()) {
-            result.warnings.push_back("function " + op.title + " " + encoding +
-                                      ", so its result may be encoded; expected what it is: "
-                                      "linear, srgb, gamma22 or gamma24");
-        }
-    }
+    add_warnings(result, function, settings, limits_powers);
     std::string assumed = "# Assumed: the input is scene-linear " + std::string(op.working.name) +
                           ", negatives count as 0, the result is " + output_text(output) + ".\n";
-    if (limits_powers) {
+    if (limits_powers)
         assumed += "# Powers and square roots of negatives, which GLSL does not define, are 0.\n";
-        result.warnings.push_back("function " + op.title +
-                                  " has powers or square roots of negatives, which GLSL does not "
-                                  "define; here they are 0");
-    }
     try {
         const ResolvedOperator resolved = resolve(op, nullptr, {}, "");
         for (const Stage& stage : resolved.build())

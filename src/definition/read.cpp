@@ -511,42 +511,59 @@ class Reader {
         return stages;
     }
 
-    StageRecipe read_stage(const Value& value, const std::string& what) {
+    /// A kind of stage, by the key of its main value.
+    struct StageReader {
+        StageRecipe::Kind kind;
+        std::string key;
+        Names others;  // keys that only this kind has
+        void (Reader::*read)(StageRecipe&, const Table&, const FormulaScope&) const;
+    };
+    static const std::vector<StageReader>& stage_readers() {
         using Kind = StageRecipe::Kind;
-        static const Names kinds = {"matrix",  "curve",      "tone_scale", "hue_preserving",
-                                    "hexcone", "cross_talk", "clamp",      "lut"};
-        static const std::vector<Names> others = {{},
-                                                  {"apply", "inverse", "weights"},
-                                                  {"norm", "weights"},
-                                                  {},
-                                                  {},
-                                                  {},
-                                                  {},
-                                                  {"input", "space"}};
+        static const std::vector<StageReader> all = {
+            {Kind::matrix, "matrix", {}, &Reader::read_matrix},
+            {Kind::curve, "curve", {"apply", "inverse", "weights"}, &Reader::read_curve},
+            {Kind::tone_scale, "tone_scale", {"norm", "weights"}, &Reader::read_tone_scale},
+            {Kind::hue_preserving, "hue_preserving", {}, &Reader::read_hue_preserving},
+            {Kind::hexcone, "hexcone", {}, &Reader::read_hexcone},
+            {Kind::cross_talk, "cross_talk", {}, &Reader::read_cross_talk},
+            {Kind::clamp, "clamp", {}, &Reader::read_clamp},
+            {Kind::lut, "lut", {"input", "space"}, &Reader::read_lut},
+        };
+        return all;
+    }
+    static const StageReader& stage_reader_of(const Value& value, const std::string& what) {
+        Names kinds;
+        for (const StageReader& reader : stage_readers())
+            kinds.push_back(reader.key);
         Names any = kinds;
         for (const char* key : {"apply", "inverse", "norm", "weights", "input", "space",
                                 "temporaries", "when", "name"})
             any.emplace_back(key);
         const Table all(value, what, any);
-        std::size_t kind = kinds.size();
-        for (std::size_t i = 0; i < kinds.size(); ++i) {
-            const Value* found = all.find(kinds[i]);
-            if (!found) continue;
-            if (kind != kinds.size()) {
-                fail(found->at, fmt::format("{0} has two kinds; expected {1}, and another {0}",
-                                            what, join_choices({kinds[kind], kinds[i]})));
+        const StageReader* found = nullptr;
+        for (const StageReader& reader : stage_readers()) {
+            const Value* main = all.find(reader.key);
+            if (!main) continue;
+            if (found) {
+                fail(main->at, fmt::format("{0} has two kinds; expected {1}, and another {0}", what,
+                                           join_choices({found->key, reader.key})));
             }
-            kind = i;
+            found = &reader;
         }
-        if (kind == kinds.size())
-            fail(value.at, what + " has no kind; expected " + join_choices(kinds));
-        Names known = {kinds[kind], "temporaries", "when", "name"};
-        known.insert(known.end(), others[kind].begin(), others[kind].end());
+        if (!found) fail(value.at, what + " has no kind; expected " + join_choices(kinds));
+        return *found;
+    }
+
+    StageRecipe read_stage(const Value& value, const std::string& what) {
+        using Kind = StageRecipe::Kind;
+        const StageReader& reader = stage_reader_of(value, what);
+        Names known = {reader.key, "temporaries", "when", "name"};
+        known.insert(known.end(), reader.others.begin(), reader.others.end());
         const Table table(value, what, known);
-        const Value& main = table.require(kinds[kind]);
         StageRecipe stage;
-        stage.kind = static_cast<Kind>(kind);
-        stage.at = main.at;
+        stage.kind = reader.kind;
+        stage.at = table.require(reader.key).at;
         if (const Value* name = table.find("name")) {
             const std::string own = Table::text_of(*name, "name");
             if (!is_id(own)) {
@@ -573,49 +590,43 @@ class Reader {
             (void)Table::text_of(*temporaries, "temporaries");
             parsed(*temporaries, [&](std::string_view text) { parse_temporaries(text, scope); });
         }
-        switch (stage.kind) {
-            case Kind::matrix:
-                for (const Value& row : Table::items_of(main, "matrix", 3)) {
-                    for (const Value& entry : Table::items_of(row, "row of the matrix", 3))
-                        stage.f.push_back(number_or_formula(entry, "matrix", scope));
-                }
-                break;
-            case Kind::curve:
-                read_curve(stage, table, scope);
-                break;
-            case Kind::tone_scale:
-                stage.f = {formula(main, "tone_scale", scope)};
-                read_norm(stage, table, table.choice("norm", {"luminance", "max"}) == 1);
-                break;
-            case Kind::hue_preserving:
-                stage.f = {formula(main, "hue_preserving", scope)};
-                break;
-            case Kind::hexcone: {
-                const Table parts(main, "hexcone", {"offset", "value", "chroma"});
-                for (const char* part : {"offset", "value", "chroma"})
-                    stage.f.push_back(formula(parts.require(part), part, scope));
-                break;
-            }
-            case Kind::cross_talk:
-                stage.f = formulas(main, "cross_talk", scope, 3);
-                break;
-            case Kind::clamp: {
-                const auto& ends = Table::items_of(main, "clamp", 2);
-                stage.lo = Table::number_of(ends[0], "clamp", true);
-                stage.hi = Table::number_of(ends[1], "clamp", true);
-                if (stage.lo > stage.hi)
-                    fail(main.at, "clamp begins at " + shortest(stage.lo) +
-                                      "; expected at most its end, " + shortest(stage.hi));
-                break;
-            }
-            case Kind::lut:
-                read_lut(stage, table);
-                break;
-        }
+        (this->*reader.read)(stage, table, scope);
         return stage;
     }
 
-    void read_lut(StageRecipe& stage, const Table& table) const {
+    void read_matrix(StageRecipe& stage, const Table& table, const FormulaScope& scope) const {
+        for (const Value& row : Table::items_of(table.require("matrix"), "matrix", 3)) {
+            for (const Value& entry : Table::items_of(row, "row of the matrix", 3))
+                stage.f.push_back(number_or_formula(entry, "matrix", scope));
+        }
+    }
+    void read_tone_scale(StageRecipe& stage, const Table& table, const FormulaScope& scope) const {
+        stage.f = {formula(table.require("tone_scale"), "tone_scale", scope)};
+        read_norm(stage, table, table.choice("norm", {"luminance", "max"}) == 1);
+    }
+    void read_hue_preserving(StageRecipe& stage, const Table& table,
+                             const FormulaScope& scope) const {
+        stage.f = {formula(table.require("hue_preserving"), "hue_preserving", scope)};
+    }
+    void read_hexcone(StageRecipe& stage, const Table& table, const FormulaScope& scope) const {
+        const Table parts(table.require("hexcone"), "hexcone", {"offset", "value", "chroma"});
+        for (const char* part : {"offset", "value", "chroma"})
+            stage.f.push_back(formula(parts.require(part), part, scope));
+    }
+    void read_cross_talk(StageRecipe& stage, const Table& table, const FormulaScope& scope) const {
+        stage.f = formulas(table.require("cross_talk"), "cross_talk", scope, 3);
+    }
+    void read_clamp(StageRecipe& stage, const Table& table, const FormulaScope&) const {
+        const Value& main = table.require("clamp");
+        const auto& ends = Table::items_of(main, "clamp", 2);
+        stage.lo = Table::number_of(ends[0], "clamp", true);
+        stage.hi = Table::number_of(ends[1], "clamp", true);
+        if (stage.lo > stage.hi)
+            fail(main.at, "clamp begins at " + shortest(stage.lo) + "; expected at most its end, " +
+                              shortest(stage.hi));
+    }
+
+    void read_lut(StageRecipe& stage, const Table& table, const FormulaScope&) const {
         const Value& main = table.require("lut");
         const std::string named = Table::text_of(main, "lut");
         const std::string extension = extension_of(named);

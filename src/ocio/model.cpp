@@ -67,6 +67,41 @@ std::string interop_id(const Item& item) {
     return "";
 }
 
+Space space_of(const InputSpace& space) {
+    // The ACES configs' own alias comes first.
+    std::vector<std::string> aliases = space.aliases;
+    const auto is_acescg = [](const std::string& alias) { return alias == "lin_ap1_acescg"; };
+    aliases.insert(std::find_if_not(aliases.begin(), aliases.end(), is_acescg), space.id);
+    const bool is_aces = space.id == "lin_ap0" || space.id == "lin_ap1";
+    return {SpaceKind::scene_linear,
+            space.title,
+            aliases,
+            is_aces ? "ACES" : "Utility/Linear",
+            "Scene-linear, " + std::string(space.primaries.name) + " primaries.",
+            "scene-linear",
+            {"file-io", "working-space"},
+            &space.primaries,
+            nullptr,
+            "",
+            interop_id(space)};
+}
+
+Space space_of(const Display& display) {
+    return {SpaceKind::display,
+            display.title,
+            display.aliases,
+            "Display",
+            display.source + (display.is_hdr ? "."
+                                             : ". Values above white are not limited (pure "
+                                               "powers: up to 2); views limit them."),
+            display.is_hdr ? "hdr-video" : "sdr-video",
+            {"file-io"},
+            &display.primaries,
+            &display,
+            "",
+            interop_id(display)};
+}
+
 Space space_of(const EncodedSpace& space) {
     Space result;
     result.name = space.title;
@@ -107,52 +142,63 @@ Space space_of(const EncodedSpace& space) {
     return result;
 }
 
+enum class RoleSpace : unsigned char { working, aces, acescct, xyz, srgb, texture, data };
+
+struct RoleRow {
+    const char* role;
+    RoleSpace space;
+};
+constexpr std::array<RoleRow, 34> kRoles = {{
+    {"aces_interchange", RoleSpace::aces},
+    {"cie_xyz_d65_interchange", RoleSpace::xyz},
+    {"default", RoleSpace::working},
+    {"reference", RoleSpace::aces},
+    {"scene_linear", RoleSpace::working},
+    {"rendering", RoleSpace::working},
+    {"data", RoleSpace::data},
+    {"color_picking", RoleSpace::srgb},
+    {"color_timing", RoleSpace::acescct},
+    {"compositing_log", RoleSpace::acescct},
+    {"matte_paint", RoleSpace::texture},
+    {"texture_paint", RoleSpace::srgb},
+    // Blender: without default_byte it opens 8-bit pictures as texture_paint; its name for it
+    // is sRGB.
+    {"default_byte", RoleSpace::srgb},
+    {"default_float", RoleSpace::working},
+    {"default_sequencer", RoleSpace::srgb},
+    // Mari
+    {"mari_monitor", RoleSpace::texture},
+    {"mari_scalar_monitor", RoleSpace::texture},
+    {"mari_color_picker", RoleSpace::texture},
+    {"mari_working", RoleSpace::working},
+    {"mari_int8", RoleSpace::texture},
+    {"mari_int16", RoleSpace::texture},
+    {"mari_int_scalar", RoleSpace::data},
+    {"mari_scalar8", RoleSpace::data},
+    {"mari_float", RoleSpace::working},
+    // RenderMan
+    {"srgb_linear", RoleSpace::working},
+    {"srgb_texture", RoleSpace::texture},
+    // Substance Painter
+    {"substance_3d_painter_standard_srgb", RoleSpace::texture},
+    {"substance_3d_painter_bitmap_import_8bit", RoleSpace::texture},
+    {"substance_3d_painter_bitmap_import_16bit", RoleSpace::texture},
+    {"substance_3d_painter_bitmap_import_floating", RoleSpace::working},
+    {"substance_3d_painter_substance_material", RoleSpace::texture},
+    {"substance_3d_painter_bitmap_export_8bit", RoleSpace::texture},
+    {"substance_3d_painter_bitmap_export_16bit", RoleSpace::texture},
+    {"substance_3d_painter_bitmap_export_floating", RoleSpace::working},
+}};
+
 std::vector<std::pair<std::string, std::string>> role_table(const std::string& working) {
-    const std::string acescct = "ACEScct";
-    const std::string aces = find_input_space("lin_ap0").title;
-    const std::string srgb = find_display("srgb").title;
-    const std::string texture = kTextureSpace;
-    return {
-        {"aces_interchange", aces},
-        {"cie_xyz_d65_interchange", "CIE-XYZ-D65"},
-        {"default", working},
-        {"reference", aces},
-        {"scene_linear", working},
-        {"rendering", working},
-        {"data", kDataSpace},
-        {"color_picking", srgb},
-        {"color_timing", acescct},
-        {"compositing_log", acescct},
-        {"matte_paint", texture},
-        {"texture_paint", srgb},
-        // Blender: without default_byte it opens 8-bit pictures as texture_paint; its name for it
-        // is sRGB.
-        {"default_byte", srgb},
-        {"default_float", working},
-        {"default_sequencer", srgb},
-        // Mari
-        {"mari_monitor", texture},
-        {"mari_scalar_monitor", texture},
-        {"mari_color_picker", texture},
-        {"mari_working", working},
-        {"mari_int8", texture},
-        {"mari_int16", texture},
-        {"mari_int_scalar", kDataSpace},
-        {"mari_scalar8", kDataSpace},
-        {"mari_float", working},
-        // RenderMan
-        {"srgb_linear", working},
-        {"srgb_texture", texture},
-        // Substance Painter
-        {"substance_3d_painter_standard_srgb", texture},
-        {"substance_3d_painter_bitmap_import_8bit", texture},
-        {"substance_3d_painter_bitmap_import_16bit", texture},
-        {"substance_3d_painter_bitmap_import_floating", working},
-        {"substance_3d_painter_substance_material", texture},
-        {"substance_3d_painter_bitmap_export_8bit", texture},
-        {"substance_3d_painter_bitmap_export_16bit", texture},
-        {"substance_3d_painter_bitmap_export_floating", working},
-    };
+    const std::array<std::string, 7> spaces = {
+        working,       find_input_space("lin_ap0").title, "ACEScct",
+        "CIE-XYZ-D65", find_display("srgb").title,        kTextureSpace,
+        kDataSpace};
+    std::vector<std::pair<std::string, std::string>> roles;
+    for (const RoleRow& row : kRoles)
+        roles.emplace_back(row.role, spaces.at(static_cast<std::size_t>(row.space)));
+    return roles;
 }
 
 /// Checks limits of applications: Blender cuts names at 63 bytes, OCIO ignores the case of names.
@@ -537,44 +583,14 @@ ConfigModel make_config_model(const ConfigOptions& options) {
         "reference. Generated by Tonewright; do not edit.";
 
     for (const InputSpace& space : all_input_spaces()) {
-        if (space.is_camera) continue;
-        // The ACES configs' own alias comes first.
-        std::vector<std::string> aliases = space.aliases;
-        const auto is_acescg = [](const std::string& alias) { return alias == "lin_ap1_acescg"; };
-        aliases.insert(std::find_if_not(aliases.begin(), aliases.end(), is_acescg), space.id);
-        const bool is_aces = space.id == "lin_ap0" || space.id == "lin_ap1";
-        model.spaces.push_back(
-            {SpaceKind::scene_linear,
-             space.title,
-             aliases,
-             is_aces ? "ACES" : "Utility/Linear",
-             "Scene-linear, " + std::string(space.primaries.name) + " primaries.",
-             "scene-linear",
-             {"file-io", "working-space"},
-             &space.primaries,
-             nullptr,
-             "",
-             interop_id(space)});
+        if (!space.is_camera) model.spaces.push_back(space_of(space));
     }
     for (const EncodedSpace& space : all_encoded_spaces())
         model.spaces.push_back(space_of(space));
     // Adds all display spaces, also those of displays that are left out, because pictures may be in
     // their code values.
     for (const Display& display : all_displays()) {
-        model.spaces.push_back(
-            {SpaceKind::display,
-             display.title,
-             display.aliases,
-             "Display",
-             display.source + (display.is_hdr ? "."
-                                              : ". Values above white are not limited (pure "
-                                                "powers: up to 2); views limit them."),
-             display.is_hdr ? "hdr-video" : "sdr-video",
-             {"file-io"},
-             &display.primaries,
-             &display,
-             "",
-             interop_id(display)});
+        model.spaces.push_back(space_of(display));
         if (options.displays.empty()) model.displays.push_back(&display);
     }
     for (const std::string& name : options.displays) {

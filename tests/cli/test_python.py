@@ -252,6 +252,9 @@ def check_config(report, tw, command, scratch):
     warned(report, "make_config of an operator that measures",
            ["Drago uses log_average 1", 'custom={VIEW: "ID:PARAMETER=VALUE"}'],
            lambda: tw.make_config(scratch / "drago", views=["drago"], displays=["srgb"], profiles=["2.1"]))
+    cache = scratch / "cache"
+    tw.bake("agx_blender:formula", scratch / "linear.clf", input_encoding="linear", cache=cache)
+    report.check("bake keeps its fit in the cache", len(list(cache.glob("cube_*.numbers"))) == 1)
     raises(report, "make_config of no view", ValueError, "hablex", lambda: tw.make_config(scratch / "x", views=["hablex"]))
 
 

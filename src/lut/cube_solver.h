@@ -41,7 +41,7 @@ struct CubeSolverOptions {
 /// The normal matrix connects a node with the seven that share an edge of a tetrahedron above it
 /// and with seven below, so it has eight blocks of 3 x 3 numbers per node, for any number of
 /// samples.
-class CubeSolver {
+class TONEWRIGHT_API CubeSolver {
   public:
     /// @param forward  color of the 3D LUT -> code values whose distances are nearly perceptual
     CubeSolver(int edge, const Pipeline& forward, CubeSolverOptions options);

@@ -162,27 +162,4 @@ std::shared_ptr<const CrossTalkCube> cross_talk_cube(const CrossTalkStage& stage
     });
 }
 
-std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage, const HueStructure& structure,
-                                        double top, const Primaries& primaries,
-                                        const std::string& cache_folder) {
-    struct HueKey {
-        std::array<Expr, 3> f;  // equal expressions are the same node, as long as one lives
-        double top;
-        Primaries primaries;
-
-        bool operator==(const HueKey& b) const {
-            return std::equal(f.begin(), f.end(), b.f.begin(), same) && top == b.top &&
-                   primaries == b.primaries;
-        }
-    };
-    static BoundedCache<HueKey, HueCube> cache(64);
-    // PQ and HLG are steeper near black than SDR codes: of P3-D65 PQ, 65 nodes leave 5.0e-3 at 99.9
-    // % of Rec.709 colors, 81 leave 3.1e-3. The bound for all displays is 4e-3.
-    const int edge = structure.peak > 1 ? 81 : 65;
-    return cache.get({stage.f, top, primaries}, [&] {
-        return fit_hue_cube(structure, top,
-                            {.edge = edge, .primaries = primaries, .cache_folder = cache_folder});
-    });
-}
-
 TONEWRIGHT_NAMESPACE_END

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "lut/hue_cube.h"
 #include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -39,12 +38,5 @@ struct CrossTalkCubeOptions {
 [[nodiscard]] std::shared_ptr<const CrossTalkCube> cross_talk_cube(
     const CrossTalkStage& stage, const ClampStage& behind, double top,
     const CrossTalkCubeOptions& options);
-
-/// The 3D LUT of a stage with a declared hue structure. Caches the last ones.
-/// @param primaries  of the working space
-[[nodiscard]] std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage,
-                                                      const HueStructure& structure, double top,
-                                                      const Primaries& primaries,
-                                                      const std::string& cache_folder);
 
 TONEWRIGHT_NAMESPACE_END

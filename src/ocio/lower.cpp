@@ -11,6 +11,7 @@
 
 #include "base/format_number.h"
 #include "lut/half_domain.h"
+#include "ocio/aces_20/hue_cube.h"
 #include "ocio/cross_talk_cube.h"
 #include "ocio/fixed_functions.h"
 #include "ocio/hexcone.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lut/hue_cube.h"
+#include "ocio/aces_20/hue_cube.h"
 
 #include <gtest/gtest.h>
 

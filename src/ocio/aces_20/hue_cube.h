@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -64,7 +64,15 @@ struct HueCubeOptions {
 };
 
 /// @param top  limit of every channel: the stage saturates there
-[[nodiscard]] TONEWRIGHT_API HueCube fit_hue_cube(const HueStructure& structure, double top,
-                                                  const HueCubeOptions& options = {});
+[[nodiscard]] HueCube fit_hue_cube(const HueStructure& structure, double top,
+                                   const HueCubeOptions& options);
+
+/// fit_hue_cube() for a stage that declares the structure. Caches the last ones.
+/// @param primaries     of the working space
+/// @param cache_folder  @see cached_numbers
+[[nodiscard]] std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage,
+                                                      const HueStructure& structure, double top,
+                                                      const Primaries& primaries,
+                                                      const std::string& cache_folder);
 
 TONEWRIGHT_NAMESPACE_END

@@ -16,14 +16,21 @@ struct GridPlace {
     std::array<std::size_t, 4> node{};
     std::array<double, 4> weight{};
     std::array<std::size_t, 3> axis{0, 1, 2};
+    std::array<double, 3> fraction{};  // of a step, along each coordinate
 
-    GridPlace(int edge, const std::array<double, 3>& at) noexcept {
-        const auto n = static_cast<std::size_t>(edge);
-        const std::array<std::size_t, 3> stride = {n * n, n, 1};
-        std::array<double, 3> fraction{};
+    /// The last coordinate runs fastest.
+    GridPlace(int edge, const std::array<double, 3>& at) noexcept
+        : GridPlace(static_cast<std::size_t>(edge), at,
+                    {static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge),
+                     static_cast<std::size_t>(edge), 1}) {}
+    /// @param n       nodes along each coordinate
+    /// @param at      limited to [0, 1], NaN to 0
+    /// @param stride  distance of neighboring nodes along each coordinate
+    GridPlace(std::size_t n, const std::array<double, 3>& at,
+              const std::array<std::size_t, 3>& stride) noexcept {
         std::size_t corner = 0;
         for (std::size_t i = 0; i < 3; ++i) {
-            const double t = at[i] > 0 ? (at[i] < 1 ? at[i] : 1.0) : 0.0;  // NaN -> 0
+            const double t = at[i] > 0 ? (at[i] < 1 ? at[i] : 1.0) : 0.0;
             const double place = t * static_cast<double>(n - 1);
             const std::size_t cell = std::min(static_cast<std::size_t>(place), n - 2);
             fraction[i] = place - static_cast<double>(cell);

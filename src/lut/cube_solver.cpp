@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "lut/in_parallel.h"
+#include "lut/least_squares.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr int kSteps = 20;
-constexpr double kConverged = 1e-8;
 /// Largest derivative of a code by the color of the 3D LUT. Perceptual codes are infinitely steep
 /// near black, and steps with larger derivatives would not converge.
 constexpr double kSteepest = 512;
@@ -28,9 +28,8 @@ CubeSolver::CubeSolver(int edge, const Pipeline& forward, CubeSolverOptions opti
       node_count_(n_ * n_ * n_),
       pad_(n_ * n_ + n_ + 1),
       code_(forward),
-      options_(std::move(options)) {
-    for (std::size_t mask = 0; mask < 8; ++mask)
-        step_[mask] = node_step(mask, n_);
+      options_(std::move(options)),
+      step_(node_steps(n_)) {
     // Second differences read two nodes beyond the edge.
     pad_ = std::max(pad_, 2 * n_ * n_);
 }
@@ -43,23 +42,12 @@ void CubeSolver::add(const Vector3& place, const Vector3& code, double weight) {
     samples_.push_back(sample);
 }
 
-void CubeSolver::sort_samples() {
-    std::vector<std::size_t> next(node_count_ + 1, 0);
-    for (const CubeSample& sample : samples_)
-        ++next[sample.cell + 1];
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    std::vector<CubeSample> sorted(samples_.size());
-    for (const CubeSample& sample : samples_)
-        sorted[next[sample.cell]++] = sample;
-    samples_ = std::move(sorted);
-}
-
 std::array<float, 3> CubeSolver::shown(const CubeNodes& nodes, const CubeSample& s) const {
     std::array<float, 3> sum{};
-    at_corners(s, [&](unsigned, std::size_t node, float weight) {
+    for (const Corner& corner : corners_of(s, step_)) {
         for (std::size_t c = 0; c < 3; ++c)
-            sum[c] += weight * static_cast<float>(nodes[3 * node + c]);
-    });
+            sum[c] += corner.weight * static_cast<float>(nodes[3 * corner.node + c]);
+    }
     return sum;
 }
 
@@ -130,18 +118,18 @@ void CubeSolver::add_sample(const CubeSample& s, Matrix& m) const {
                 square[a + b + (a > 0 && b > 0 ? 1 : 0)] += g[a] * g[b];
         }
     }
-    at_corners(s, [&](unsigned mask, std::size_t node, float weight) {
+    const std::array<Corner, 4> corners = corners_of(s, step_);
+    for (auto corner = corners.begin(); corner != corners.end(); ++corner) {
+        const std::size_t node = pad_ + corner->node;
         for (std::size_t c = 0; c < 3; ++c)
-            m.right[pad_ + node][c] += weight * pull[c];
-        // Corners are in rising order, and the mask of each holds the one before.
-        at_corners(s, [&](unsigned other, std::size_t, float factor) {
-            if (other < mask || (other & mask) != mask) return;
-            Block& block = m.blocks[other ^ mask][pad_ + node];
-            const float product = weight * factor;
+            m.right[node][c] += corner->weight * pull[c];
+        for (auto other = corner; other != corners.end(); ++other) {
+            Block& block = m.blocks[other->mask ^ corner->mask][node];
+            const float product = corner->weight * other->weight;
             for (std::size_t k = 0; k < 6; ++k)
                 block[k] += product * square[k];
-        });
-    });
+        }
+    }
 }
 
 CubeSolver::Matrix CubeSolver::add_up() const {
@@ -267,21 +255,19 @@ void CubeSolver::improve(CubeNodes& nodes) const {
     Vector direction = make_vector();
     Vector image = make_vector();
     Vector change = make_vector();
-    double size = weighed_residual();
-    const double enough = kConverged * size;
-    float turn = 0;
-    for (int step = 0; step < kSteps && size > enough; ++step) {
+    const auto turn = [&](float share) {
         over_nodes([&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 for (std::size_t c = 0; c < 3; ++c)
-                    direction[i][c] = scale[i][c] * residual[i][c] + turn * direction[i][c];
+                    direction[i][c] = scale[i][c] * residual[i][c] + share * direction[i][c];
             }
         });
         multiply_by(m, direction, image);
-        const auto length = static_cast<float>(size / sum_over([&](std::size_t i, std::size_t c) {
-                                                   return static_cast<double>(direction[i][c]) *
-                                                          static_cast<double>(image[i][c]);
-                                               }));
+        return sum_over([&](std::size_t i, std::size_t c) {
+            return static_cast<double>(direction[i][c]) * static_cast<double>(image[i][c]);
+        });
+    };
+    conjugate_gradients(kSteps, weighed_residual, turn, [&](float length) {
         over_nodes([&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -290,10 +276,7 @@ void CubeSolver::improve(CubeNodes& nodes) const {
                 }
             }
         });
-        const double next = weighed_residual();
-        turn = static_cast<float>(next / size);
-        size = next;
-    }
+    });
     for (std::size_t i = 0; i < node_count_; ++i) {
         for (std::size_t c = 0; c < 3; ++c)
             nodes[3 * i + c] += static_cast<double>(change[pad_ + i][c]);

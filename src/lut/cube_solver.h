@@ -49,9 +49,8 @@ class TONEWRIGHT_API CubeSolver {
     void reserve(std::size_t count) { samples_.reserve(count); }
     void add(const Vector3& place, const Vector3& code, double weight);
     [[nodiscard]] std::vector<CubeSample>& samples() { return samples_; }
-    /// Sorts samples by cell, so that additions to the matrix stay in the processor's cache. Call
-    /// after the last add().
-    void sort_samples();
+    /// Call after the last add().
+    void sort_samples() { samples_ = sorted_by_cell(samples_, node_count_); }
 
     [[nodiscard]] std::array<float, 3> shown(const CubeNodes& nodes, const CubeSample& s) const;
     /// Sets the residual of each code value, and its derivative by the color of the 3D LUT.
@@ -71,15 +70,6 @@ class TONEWRIGHT_API CubeSolver {
     };
 
     template <class F>
-    void at_corners(const CubeSample& s, const F& f) const {
-        const auto [second, third, far] = s.weight;
-        f(0U, s.cell, 1 - second - third - far);
-        f(unsigned{s.second}, s.cell + step_[s.second], second);
-        f(unsigned{s.third}, s.cell + step_[s.third], third);
-        f(7U, s.cell + step_[7], far);
-    }
-
-    template <class F>
     void over_nodes(const F& f) const;
     [[nodiscard]] Matrix add_up() const;
     void add_sample(const CubeSample& s, Matrix& m) const;
@@ -93,7 +83,7 @@ class TONEWRIGHT_API CubeSolver {
     std::size_t pad_;
     GradientEngine code_;  // of the 3D LUT's color
     CubeSolverOptions options_;
-    std::array<std::size_t, 8> step_{};  // from a node to the one that a mask of steps leads to
+    NodeSteps step_;
     std::vector<CubeSample> samples_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "base/random.h"
 #include "lut/in_parallel.h"
+#include "lut/least_squares.h"
 #include "lut/picture_color.h"
 #include "lut/tetrahedron.h"
 #include "measure/photographs.h"
@@ -46,7 +47,6 @@ constexpr int kBoundRounds = 2;
 /// that few bounds break. With 0.3, 99.9 % of photographs get 4 % worse (AgX, LogC3).
 constexpr float kDamping = 1;
 constexpr int kSteps = 30;
-constexpr double kConverged = 1e-8;
 
 /// A training color: its position and the wanted code.
 struct Sample : Tetrahedron {
@@ -61,9 +61,8 @@ class Fit {
           node_count_(n_ * n_ * n_),
           pad_(n_ * n_ + n_ + 1),
           threads_(options.thread_count),
-          options_(options) {
-        for (std::size_t mask = 0; mask < 8; ++mask)
-            step_[mask] = node_step(mask, n_);
+          options_(options),
+          step_(node_steps(n_)) {
         const double wanted = options.samples_per_node * static_cast<double>(node_count_);
         sample_count_ =
             std::min(static_cast<std::size_t>(std::max(wanted, 0.0)), options.largest_sample_count);
@@ -72,7 +71,7 @@ class Fit {
     std::vector<double> run() {
         const std::vector<double> start = take_sampled();
         fit_grays();
-        sort_samples(draw_samples());
+        samples_ = sorted_by_cell(draw_samples(), node_count_);
         for (std::size_t c = 0; c < 3; ++c)
             nodes_[c] = start_[c];
         solve(kRounds, 0);
@@ -135,8 +134,7 @@ class Fit {
         return start;
     }
 
-    /// Least squares in one dimension, with colors at equal distances: the edge between two grays'
-    /// nodes is an edge of tetrahedra, so no other node affects a gray.
+    /// From colors at equal distances.
     void fit_grays() {
         constexpr std::size_t kPerStep = 64;
         const std::size_t count = (n_ - 1) * kPerStep;
@@ -157,10 +155,7 @@ class Fit {
 
     /// @param code  of grays, a fixed number in each step of the axis.
     void fit_grays(const std::vector<double>& code, std::size_t per_step, Plane& x) const {
-        // A tridiagonal matrix; black is known.
-        std::vector<double> diagonal(n_, static_cast<double>(kPull));
-        std::vector<double> beside(n_, 0.0);
-        std::vector<double> right(n_, 0.0);
+        LineFit line(n_, static_cast<double>(kPull));
         const auto node = [&](std::size_t i) -> float& { return x[pad_ + i * gray_step()]; };
         for (std::size_t k = 0; k < code.size(); ++k) {
             const std::size_t i = k / per_step;
@@ -170,22 +165,9 @@ class Fit {
                 (1 - t) * static_cast<double>(node(i)) + t * static_cast<double>(node(i + 1));
             const auto w = static_cast<double>(
                 importance(static_cast<float>(code[k]), static_cast<float>(current)));
-            diagonal[i] += w * (1 - t) * (1 - t);
-            beside[i] += w * t * (1 - t);
-            diagonal[i + 1] += w * t * t;
-            right[i] += w * (1 - t) * (code[k] - current);
-            right[i + 1] += w * t * (code[k] - current);
+            line.add(i, t, code[k] - current, w);
         }
-        for (std::size_t i = 2; i < n_; ++i) {
-            const double ratio = beside[i - 1] / diagonal[i - 1];
-            diagonal[i] -= ratio * beside[i - 1];
-            right[i] -= ratio * right[i - 1];
-        }
-        double above = 0;
-        for (std::size_t i = n_ - 1; i > 0; --i) {
-            above = (right[i] - beside[i] * above) / diagonal[i];
-            node(i) += static_cast<float>(above);
-        }
+        line.solve([&](std::size_t i, double change) { node(i) += static_cast<float>(change); });
     }
 
     [[nodiscard]] std::vector<Sample> draw_samples() const {
@@ -214,18 +196,6 @@ class Fit {
                 drawn[begin + i] = make_sample(&place[3 * i], &code[3 * i]);
         });
         return drawn;
-    }
-
-    /// Sorts by cell, so that additions to the matrix stay in the processor's cache.
-    void sort_samples(const std::vector<Sample>& drawn) {
-        std::vector<std::size_t> next(node_count_ + 1, 0);
-        for (const Sample& sample : drawn)
-            ++next[sample.cell + 1];
-        for (std::size_t i = 0; i < node_count_; ++i)
-            next[i + 1] += next[i];
-        samples_.resize(drawn.size());
-        for (const Sample& sample : drawn)
-            samples_[next[sample.cell]++] = sample;
     }
 
     /// Typical colors of pictures, or others: half inside Rec.709 and half inside the given
@@ -272,10 +242,10 @@ class Fit {
 
     /// Interpolates the nodes x at a sample.
     [[nodiscard]] float shown(const Plane& x, const Sample& sample) const {
-        const float* first = x.data() + pad_ + sample.cell;
-        const auto [second, third, last] = sample.weight;
-        return (1 - second - third - last) * first[0] + second * first[step_[sample.second]] +
-               third * first[step_[sample.third]] + last * first[step_[7]];
+        float sum = 0;
+        for (const Corner& corner : corners_of(sample, step_))
+            sum += corner.weight * x[pad_ + corner.node];
+        return sum;
     }
 
     /// Equations for the correction of the nodes of channel c.
@@ -289,15 +259,13 @@ class Fit {
             const float current = shown(x, sample);
             const float missing = sample.code[c] - current;
             const float w = importance(sample.code[c], current);
-            const auto [second, third, last] = sample.weight;
-            const std::array<float, 4> weight = {1 - second - third - last, second, third, last};
-            const std::array<std::size_t, 4> mask = {0, sample.second, sample.third, 7};
-            for (std::size_t k = 0; k < 4; ++k) {
-                const std::size_t node = pad_ + sample.cell + step_[mask[k]];
-                const float share = w * weight[k];
+            const std::array<Corner, 4> corners = corners_of(sample, step_);
+            for (auto corner = corners.begin(); corner != corners.end(); ++corner) {
+                const std::size_t node = pad_ + corner->node;
+                const float share = w * corner->weight;
                 right[node] += share * missing;
-                for (std::size_t l = k; l < 4; ++l)
-                    matrix[mask[l] ^ mask[k]][node] += share * weight[l];
+                for (auto other = corner; other != corners.end(); ++other)
+                    matrix[other->mask ^ corner->mask][node] += share * other->weight;
             }
         }
         for (std::size_t i = pad_; i < pad_ + node_count_; ++i) {
@@ -346,7 +314,7 @@ class Fit {
         });
     }
 
-    /// Conjugate gradients, preconditioned with the diagonal.
+    /// The preconditioner is the diagonal.
     void add_solution(NormalEquations& equations, Plane& x) const {
         const Plane& diagonal = equations.matrix[0];
         Plane& residual = equations.right;
@@ -359,23 +327,20 @@ class Fit {
             return sum;
         };
         const auto conditioned = [&](std::size_t i) { return residual[i] / diagonal[i]; };
-        double size = dot(residual, conditioned);
-        const double enough = kConverged * size;
-        float turn = 0;
-        for (int step = 0; step < kSteps && size > enough; ++step) {
+        const auto turn = [&](float share) {
             for (std::size_t i = pad_; i < pad_ + node_count_; ++i)
-                direction[i] = conditioned(i) + turn * direction[i];
+                direction[i] = conditioned(i) + share * direction[i];
             multiply_by(equations.matrix, direction, image);
-            const auto length =
-                static_cast<float>(size / dot(direction, [&](std::size_t i) { return image[i]; }));
-            for (std::size_t i = pad_; i < pad_ + node_count_; ++i) {
-                x[i] += length * direction[i];
-                residual[i] -= length * image[i];
-            }
-            const double next = dot(residual, conditioned);
-            turn = static_cast<float>(next / size);
-            size = next;
-        }
+            return dot(direction, [&](std::size_t i) { return image[i]; });
+        };
+        conjugate_gradients(
+            kSteps, [&] { return dot(residual, conditioned); }, turn,
+            [&](float length) {
+                for (std::size_t i = pad_; i < pad_ + node_count_; ++i) {
+                    x[i] += length * direction[i];
+                    residual[i] -= length * image[i];
+                }
+            });
     }
 
     const CubeProblem& problem_;
@@ -385,7 +350,7 @@ class Fit {
     unsigned threads_;
     const CubeFitOptions& options_;
     std::size_t sample_count_ = 0;
-    std::array<std::size_t, 8> step_{};  // from a node to the one that a mask of steps leads to
+    NodeSteps step_;
     std::array<Plane, 3> start_;
     std::array<Plane, 3> nodes_;
     std::vector<Sample> samples_;
@@ -422,10 +387,6 @@ double choose_share_of_lights(const CubeProblem& problem, double top) {
         least = std::min(error, least);
     }
     return best;
-}
-
-CubeAxis choose_log_axis(const CubeProblem& problem, double top) {
-    return make_log_axis(top, problem.edge, choose_share_of_lights(problem, top));
 }
 
 std::vector<double> sample_cube(const CubeProblem& problem) {

@@ -44,13 +44,10 @@ struct CubeProblem {
     double hi = kInfinity;
 };
 
-/// The best share for make_log_axis() and this pipeline, @see choose_log_axis.
-[[nodiscard]] TONEWRIGHT_API double choose_share_of_lights(const CubeProblem& problem, double top);
-
-/// The best logarithmic axis for the pipeline, by the errors of sampled 3D LUTs with 33 nodes a
-/// side. Its steps are longer above 64 if the operator changes little there.
+/// The best share for make_log_axis() and the pipeline, by the errors of sampled 3D LUTs with 33
+/// nodes a side: above 0 if the operator changes little above 64.
 /// @param problem  its axis is ignored.
-[[nodiscard]] TONEWRIGHT_API CubeAxis choose_log_axis(const CubeProblem& problem, double top);
+[[nodiscard]] TONEWRIGHT_API double choose_share_of_lights(const CubeProblem& problem, double top);
 
 struct CubeFitOptions {
     /// Twice as many improve the error by a few percent.

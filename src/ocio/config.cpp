@@ -13,6 +13,7 @@
 #include "base/random.h"
 #include "base/strings.h"
 #include "ocio/config_builder.h"
+#include "ocio/round_trip.h"
 #include "pipeline/stand_ins.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
@@ -86,10 +87,9 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
     return text;
 }
 
-/// Tolerance of code values: an error of `bound` in the code value, or of `bound`/12.92 in
-/// display-linear. 12.92 is sRGB's slope at black, where powers are infinitely steep.
+/// Tolerance of code values: an error of `bound` in the code value, or in display-linear the same
+/// as visible_error().
 Vector3 code_tolerance(const Display& display, const Vector3& code, double bound) {
-    constexpr double kSrgbSlopeAtBlack = 12.92;
     const ReferenceEngine decode(display.decode);
     const ReferenceEngine encode(display.encode);
     const Vector3 light = decode(code);

@@ -8,7 +8,6 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 double visible_error(double code, double light) {
-    constexpr double kSrgbSlopeAtBlack = 12.92;
     return std::min(code, kSrgbSlopeAtBlack * light);
 }
 

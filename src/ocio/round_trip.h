@@ -12,6 +12,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+inline constexpr double kSrgbSlopeAtBlack = 12.92;
+
 /// Error of a code value, or of its display-linear value times sRGB's slope at black, whichever is
 /// less. A display with a pure power has an infinite slope at black, where invisible differences
 /// are many code values.

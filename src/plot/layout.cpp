@@ -11,6 +11,7 @@
 
 #include "base/format_number.h"
 #include "plot/surface.h"
+#include "tonewright/color.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -106,10 +107,6 @@ std::string scene_linear_at(int stops) {
     return fmt::format("{:.{}f}", x, digits);
 }
 
-double light_of(double code) {  // IEC 61966-2-1
-    return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
-}
-
 Segment vertical(double stops, double top, double bottom) {
     return {{x_of(stops), top}, {x_of(stops), bottom}};
 }
@@ -130,7 +127,7 @@ PlotScale srgb_scale() {
     PlotScale scale;
     scale.ticks = even_ticks(scale);
     for (PlotTick& tick : scale.ticks) {
-        const double percent = 100 * light_of(tick.value);
+        const double percent = 100 * evaluate(srgb_decode(Expr::input()), tick.value);
         if (percent > 0) tick.right = fmt::format("{:.{}f} %", percent, percent < 10 ? 1 : 0);
     }
     return scale;

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "expr/grid_place.h"
-
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 

@@ -183,11 +183,7 @@ bool is_light(const ShaderRequest& request) {
 }
 
 /// Display-linear as unlimited sRGB code values; differences above 1 count relatively.
-Expr code_value(const Expr& light) {
-    const Expr x = max(light, 0);
-    return select(less_equal(x, 0.0031308), 12.92 * x,
-                  1.055 * pow(max(x, 0.0031308), 1 / 2.4) - 0.055);
-}
+Expr code_value(const Expr& light) { return srgb_encode(max(light, 0)); }
 
 /// Round trip error: display colors through the inverse and the view, for colors that the view can
 /// show.

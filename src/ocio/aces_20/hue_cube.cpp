@@ -17,6 +17,7 @@
 #include "lut/cube_solver.h"
 #include "lut/fit_key.h"
 #include "lut/in_parallel.h"
+#include "lut/least_squares.h"
 #include "lut/picture_color.h"
 #include "tonewright/engine.h"
 #include "tonewright/view.h"
@@ -631,14 +632,12 @@ class Maker {
     }
 
     /// Grays of all hues: float rounding decides the hue of a gray, so the nodes of all hues must
-    /// agree. Least squares along the value axis; black is known.
+    /// agree.
     void fit_grays(CubeNodes& nodes) const {
         const std::size_t n = nodes_[0].size();
         constexpr std::size_t kPerStep = 16;
         in_parallel(n, options_.thread_count, [&](std::size_t h) {
-            std::vector<double> diagonal(n, 1e-3);
-            std::vector<double> beside(n, 0.0);
-            std::vector<double> right(n, 0.0);
+            LineFit line(n, 1e-3);
             const auto code = [&](std::size_t v) -> double& {
                 return nodes[3 * (h * n * n + v) + 2];
             };
@@ -648,23 +647,10 @@ class Maker {
                     const double toe = nodes_[2][v] + t * (nodes_[2][v + 1] - nodes_[2][v]);
                     const double missing = node_of(shown_(axes_at({nodes_[0][h], 0, toe})))[2] -
                                            (1 - t) * code(v) - t * code(v + 1);
-                    diagonal[v] += (1 - t) * (1 - t);
-                    beside[v] += t * (1 - t);
-                    diagonal[v + 1] += t * t;
-                    right[v] += (1 - t) * missing;
-                    right[v + 1] += t * missing;
+                    line.add(v, t, missing);
                 }
             }
-            for (std::size_t v = 2; v < n; ++v) {
-                const double ratio = beside[v - 1] / diagonal[v - 1];
-                diagonal[v] -= ratio * beside[v - 1];
-                right[v] -= ratio * right[v - 1];
-            }
-            double above = 0;
-            for (std::size_t v = n - 1; v > 0; --v) {
-                above = (right[v] - beside[v] * above) / diagonal[v];
-                code(v) += above;
-            }
+            line.solve([&](std::size_t v, double change) { code(v) += change; });
             for (std::size_t v = 0; v < n; ++v) {
                 nodes[3 * (h * n * n + v)] = (kNeutralX - kLowestX) / kRatioRange;
                 nodes[3 * (h * n * n + v) + 1] = (kNeutralY - kLowestY) / kRatioRange;

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tonewright command, end to end: what every subcommand does, and what it says to bad input.
 
-    python3 tests/cli/test_cli.py build/release/bin/tonewright
-
-Bad input gives one line on standard error that begins with `tonewright: `, the right exit code, and no file. The last
-line is `N passed, M failed`.
+Bad input gives one line on standard error that begins with `tonewright: `, the right exit code, and no file.
 """
 
-import argparse
 import json
 import os
 import re
@@ -16,18 +12,16 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import (Report, acescct_decode, evaluate, files_of, log2_decode, need_program, read_planes,  # noqa: E402
-                      read_rgb, run, share_of, share_of_refusals, stack, unstack, views, write_exr)
-from sanitizers import is_sanitized  # noqa: E402
+import pytest
+from pictures import (acescct_decode, evaluate, files_of, log2_decode, need_program, read_planes, read_rgb, run,
+                      share_of_refusals, skip, stack, unstack, views, write_exr)
+from sanitizers import is_sanitized
 
 try:
     import PyOpenColorIO as ocio
@@ -55,11 +49,18 @@ def call(command, arguments, stdin="", folder=None, prefix=()):
     return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
 
 
+@pytest.fixture(scope="module")
+def picture(command, folder):
+    need_program("oiiotool", "openimageio-tools")
+    run(command, "chart", "-o", folder / "small.exr", "--width", 640, "--height", 360, "-d", "half")
+    return folder / "small.exr"
+
+
 # --------------------------------------------------------------------------------------------------
 # Commands that work
 
 
-def check_help(report, command):
+def test_help(report, command):
     for arguments in ([], *([name] for name in SUBCOMMANDS)):
         code, out, err = call(command, [*arguments, "--help"])
         report.check(f"{' '.join(arguments)} --help", code == OK and not err and "Example" in out,
@@ -71,7 +72,7 @@ def check_help(report, command):
     report.check("--version", code == OK and out[:1].isdigit(), out)
 
 
-def check_list(report, command):
+def test_list(report, command):
     overview = run(command, "list")
     text = run(command, "list", "--json")
     everything = json.loads(text, parse_constant=lambda name: report.check("list --json is JSON", False, name))
@@ -136,7 +137,7 @@ def check_list(report, command):
         report.check(f"list {name} --json: live parameters", said == (live.split(", ") if live else []), said)
 
 
-def check_eval_text(report, command):
+def test_eval_text(report, command):
     """Layouts of numbers, and figures of the publications to nine digits."""
     expected = "0.128338449 0.128338449 0.128338449\n"  # Hable, GDC 2010: h(2 x 0.18) / h(11.2)
     layouts = {
@@ -219,7 +220,7 @@ def check_eval_text(report, command):
     report.check("eval: 5000 lines", len(run(command, "eval", "hable", stdin=many).splitlines()) == 5000)
 
 
-def check_names(report, command):
+def test_names(report, command):
     """One grammar for all: what is typed in another way is the same operator, display, space, engine."""
     colors = "1 .5 .2"
     punchy = run(command, "eval", "agx_blender", "--look", "punchy", stdin=colors)
@@ -239,7 +240,7 @@ def check_names(report, command):
         report.check(" ".join(arguments), code == OK and (out, err) == (run(command, *arguments[1:], "--help"), ""), err)
 
 
-def check_coprocess(report, command):
+def test_coprocess(report, command):
     """`eval` answers a line before it reads the next; a line has a limit; what is wrong with the input is said of it."""
     with subprocess.Popen([command, "eval", "reinhard", "--display", "native"], stdin=subprocess.PIPE,
                           stdout=subprocess.PIPE) as process:
@@ -263,7 +264,8 @@ def check_coprocess(report, command):
                  and done.stderr.startswith(b"tonewright: read: standard input: "), done.stderr)
 
 
-def check_apply_many(report, command, scratch, picture):
+@pytest.mark.share(3)
+def test_apply_many(report, command, scratch, picture):
     """Several pictures, folders and lists into a folder; -o; AgX where no operator is named."""
     def applied(*arguments):
         return call(command, ["apply", *arguments], folder=scratch)
@@ -307,7 +309,8 @@ def check_apply_many(report, command, scratch, picture):
                  and err.count("y.cube: the file does not say which encoding it expects") == 1, err)
 
 
-def check_limits(report, command, scratch, picture):
+@pytest.mark.share(3)
+def test_limits(report, command, scratch, picture):
     """Files with control characters in their names, a file that may not become larger, an interrupt while a config is made, memory that does not do."""
     code, _, err = call(command, ["bake", "agx_sobotka", "--nodes", "sampled", "-o", scratch / "x.cube"],
                         prefix=["sh", "-c", 'ulimit -f 20; exec "$0" "$@"'])
@@ -352,7 +355,7 @@ def check_limits(report, command, scratch, picture):
     report.check("SIGINT leaves no empty folder", not os.listdir(scratch), os.listdir(scratch))
 
 
-def check_engines(report, command):
+def test_engines(report, command):
     """One operator of each structure: curves, matrices and curves, a tone scale, a cube. `verify` has them all."""
     rng = np.random.default_rng(5)
     grays = np.repeat(0.18 * 2.0 ** np.arange(-10, 11)[:, None], 3, axis=1)
@@ -382,7 +385,8 @@ def check_engines(report, command):
         report.check(f"eval --explain: {word}", any(part.lstrip().startswith(word) for part in parts), text[-2000:])
 
 
-def check_apply(report, command, scratch):
+@pytest.mark.share(3)
+def test_apply(report, command, scratch):
     """Pictures of every channel layout, and pixel types."""
     rng = np.random.default_rng(2)
     rgb = (2.0 ** rng.uniform(-8, 4, (24, 32, 3))).astype(np.float32)
@@ -456,7 +460,8 @@ def check_apply(report, command, scratch):
     report.compare("apply onto itself", read_rgb(source, scratch), truth, FLOAT32)
 
 
-def check_statistics(report, command, scratch):
+@pytest.mark.share(3)
+def test_statistics(report, command, scratch):
     """Parameters that a picture has: measured here with NumPy, in double."""
     rng = np.random.default_rng(8)
     rgb = (2.0 ** rng.uniform(-9, 5, (40, 50, 3))).astype(np.float32)
@@ -509,7 +514,8 @@ def check_statistics(report, command, scratch):
         applied("--operator", "drago", "--threads", "1"), applied("--operator", "drago", "--threads", "7")))
 
 
-def check_frames(report, command, scratch, picture):
+@pytest.mark.share(3)
+def test_frames(report, command, scratch, picture):
     """The frames of a shot: the files that one call for each makes; the failure of one is not that of the others."""
     def names():
         return sorted(path.name for path in scratch.glob("out.*"))
@@ -569,7 +575,8 @@ def read_lut(path, codes):
     return image
 
 
-def check_bake_warnings(report, command, scratch):
+@pytest.mark.share(3)
+def test_bake_warnings(report, command, scratch):
     """One line for what a LUT cannot hold; none where it can."""
     path = scratch / "warned.cube"
 
@@ -597,7 +604,8 @@ def check_bake_warnings(report, command, scratch):
     report.check("bake of a LUT that does not ring: no warning", code == OK and not lines, err)
 
 
-def check_bake_for(report, command, scratch):
+@pytest.mark.share(3)
+def test_bake_for(report, command, scratch):
     """The last lines of `bake --for` hold for the file: its size, its name, its input and its display."""
     path = scratch / "steps.cube"
 
@@ -638,7 +646,8 @@ def check_bake_for(report, command, scratch):
                      ("ffmpeg: these steps are for the display rec1886; the file is for rec2100_pq" in err) == is_told, err)
 
 
-def check_bake_progress(report, command, scratch):
+@pytest.mark.share(3)
+def test_bake_progress(report, command, scratch):
     """A terminal shows the seconds of a long search for a size."""
     ours, theirs = os.openpty()
     run = subprocess.Popen([command, "bake", "agx_blender", "--max-error", "1e-9", "-o", scratch / "search.cube"],
@@ -656,7 +665,8 @@ def check_bake_progress(report, command, scratch):
     report.check("bake --max-error on a terminal: the seconds", b"\rbake: 2 s" in text, text)
 
 
-def check_exact_forms(report, command, scratch):
+@pytest.mark.share(3)
+def test_exact_forms(report, command, scratch):
     """`bake --exact`: the most exact file first, by commands that run."""
     code, out, err = call(command, ["bake", "khronos_neutral", "--exact", "--for", "nuke", "--set", "start_compression=0.7"])
     lines = out.splitlines()
@@ -687,11 +697,11 @@ def check_exact_forms(report, command, scratch):
                      code == USAGE and word in err and len(err.splitlines()) == 1 and not list(scratch.glob("x.*")), err)
 
 
-def check_bake(report, command, scratch):
+@pytest.mark.share(3)
+def test_bake(report, command, scratch):
     """Every format, as OpenColorIO reads it: the nodes are the operator, between them the error is what bake says."""
     if ocio is None:
-        print("skipped: bake, read back (PyOpenColorIO is not installed; Debian: python3-pyopencolorio)")
-        return
+        skip("bake, read back (PyOpenColorIO is not installed; Debian: python3-pyopencolorio)")
     rng = np.random.default_rng(9)
     ap1, log2, curve = ("acescct", "lin_ap1", acescct_decode), ("log2", "lin_rec709", log2_decode), ["--1d"]
     linear = ("linear:0:8", "lin_rec709", lambda code: code)
@@ -729,15 +739,13 @@ def check_bake(report, command, scratch):
         report.compare(f"bake {file}: between them", shown[2000:], truth[2000:], stated + FLOAT32)
     first = (scratch / "agx33.cube").read_bytes()
     run(command, "bake", "agx_sobotka", "-o", scratch / "agx33.cube", "--nodes", "sampled")
-    check_bake_warnings(report, command, scratch)
-    check_bake_for(report, command, scratch)
-    check_bake_progress(report, command, scratch)
     report.check("bake again: the same bytes, with the default encoding", (scratch / "agx33.cube").read_bytes() == first)
     report.check("bake: the file says input, output and error",
                  all(word in first[:1000].decode() for word in ("# Input: ACEScct", "# Output: sRGB", "# Error")))
 
 
-def check_chart(report, command, scratch, picture):
+@pytest.mark.share(3)
+def test_chart(report, command, scratch, picture):
     chart = scratch / "chart.exr"
     run(command, "chart", "-o", chart)
     rgb = read_rgb(chart, scratch)
@@ -749,7 +757,8 @@ def check_chart(report, command, scratch, picture):
     report.check("chart again: the same pixels", np.array_equal(read_rgb(chart, scratch), rgb))
 
 
-def check_sheet(report, command, scratch, picture):
+@pytest.mark.share(3)
+def test_sheet(report, command, scratch, picture):
     shown = scratch / "shown.png"
     run(command, "apply", picture, shown, "--operator", "hable")
     run(command, "sheet", f"a={shown}", f"b={shown}", shown, "-o", scratch / "sheet.png", "--columns", 2,
@@ -758,7 +767,8 @@ def check_sheet(report, command, scratch, picture):
     report.check("sheet: 2 columns, 2 rows", 200 <= width <= 300 and 112 < height < 300, f"{width} x {height}")
 
 
-def check_archive(report, command, scratch):
+@pytest.mark.share(3)
+def test_archive(report, command, scratch):
     """The same files in one, in the same bytes each time."""
     path = scratch / "a.ocioz"
     run(command, "config", "--archive", path, "--views", "hable")
@@ -794,9 +804,11 @@ def check_archive(report, command, scratch):
     report.check("config-2.5.ocio: empty lines before parts and spaces only", behind_empty_lines and not odd, odd[:3])
 
 
-def check_verify(report, command, scratch, folder, picture):
+@pytest.mark.share(3)
+def test_verify(report, command, scratch, picture):
     """Exit 1 when a form is beyond its bound: here a config whose table was made wrong."""
-    folder = Path(shutil.copytree(folder, scratch / "config"))
+    folder = scratch / "config"
+    run(command, "config", "-o", folder, "--views", "hable")
     arguments = ["verify", "hable", "--quick", "--no-gpu", "--config", folder]
     code, out, err = call(command, arguments)
     report.check("verify --config", code == OK and not err and out.splitlines()[-1].endswith(", 0 beyond their bound"),
@@ -830,16 +842,17 @@ def check_verify(report, command, scratch, folder, picture):
 # Commands that fail
 
 
-def make_bad_pictures(scratch, picture):
+@pytest.fixture(scope="module")
+def bad(folder, picture):
     """Files that `apply` must refuse, as {name: path}."""
-    bad = {name: scratch / f"bad.{name}" for name in ("missing.exr", "empty.exr", "text.exr", "deep.exr", "two.exr")}
+    bad = {name: folder / f"bad.{name}" for name in ("missing.exr", "empty.exr", "text.exr", "deep.exr", "two.exr")}
     bad["empty.exr"].write_bytes(b"")
     bad["text.exr"].write_text("this is no picture\n" * 100)
     run("oiiotool", "--create", "16x16", 5, "--chnames", "R,G,B,A,Z", "-d", "float", "--deepen", "-o", bad["deep.exr"])
-    rgb = read_rgb(picture, scratch)
+    rgb = read_rgb(picture, folder)
     write_exr(bad["two.exr"], {"X": rgb[..., 0], "Y": rgb[..., 1]})
     for kind in ("exr", "hdr", "png", "tif", "jpg"):
-        path = bad[f"half.{kind}"] = scratch / f"half.{kind}"
+        path = bad[f"half.{kind}"] = folder / f"half.{kind}"
         run("oiiotool", picture, "--clamp:min=0:max=1", "-o", path)
         whole = path.read_bytes()
         path.write_bytes(whole[:len(whole) // 2])
@@ -1090,7 +1103,7 @@ def file_errors(bad, picture, scratch):
 
 def check_error(report, command, scratch, number, expected_code, arguments, words, stdin):
     """One call, in a folder of its own, which must look the same afterwards."""
-    folder = scratch / f"error.{number}"
+    folder = scratch / f"error.{expected_code}.{number}"
     (folder / "there").mkdir(parents=True)
     (folder / "file").write_text("old")
     code, out, err = call(command, arguments, stdin, folder)
@@ -1110,6 +1123,20 @@ def check_error(report, command, scratch, number, expected_code, arguments, word
     if stdin:
         shown += f" < {stdin.splitlines()[-2]!r}"
     report.check(f"exit {expected_code}: {shown}", not problems, f"{', '.join(problems)}; it said: {err.strip()[:300]}")
+
+
+def test_usage_errors(report, command, folder, bad, picture):
+    check_errors(report, command, folder, USAGE, usage_errors(bad, picture))
+
+
+def test_file_errors(report, command, folder, bad, picture):
+    check_errors(report, command, folder, FILE, file_errors(bad, picture, folder))
+
+
+def check_errors(report, command, scratch, expected_code, cases):
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda case: check_error(report, command, scratch, case[0], expected_code, *case[1]),
+                      enumerate(share_of_refusals(cases, lambda case: case[0], 4))))
 
 
 def check_old_file(report, command, scratch, number, what, expected_code, arguments, prefix=()):
@@ -1141,7 +1168,13 @@ def old_files(bad, picture):
     ]
 
 
-def check_full_disks(report, command, scratch):
+def test_old_files(report, command, scratch, bad, picture):
+    for number, case in enumerate(old_files(bad, picture)):
+        check_old_file(report, command, scratch, number, *case)
+
+
+@pytest.mark.share(3)
+def test_full_disks(report, command, scratch):
     (scratch / "config.ocio").write_text("the old file")
     code, _, err = call(command, ["config", "-o", scratch, "--views", "hable"], prefix=DISK_FULL)
     report.check("old file survives: config, disk full", code == FILE and err.count("\n") == 1
@@ -1169,11 +1202,10 @@ def start_time(command, *arguments):
     return min(times)
 
 
-def check_start(report, command):
+def test_start(report, command):
     """Help, the version and commands without pictures start without OpenImageIO."""
     if not shutil.which("ldd"):
-        print("skipped: start, ldd is not here")
-        return
+        skip("start, ldd is not here")
     libraries = subprocess.run(["ldd", command], capture_output=True, text=True, check=True).stdout
     report.check("the program is not linked with OpenImageIO",
                  "libOpenColorIO" in libraries and "OpenImageIO" not in libraries, libraries)
@@ -1186,83 +1218,31 @@ def check_start(report, command):
         report.bound(f"{' '.join(arguments)} starts, seconds", start_time(command, *arguments), limit)
 
 
-def check_module(report, command, folder):
+@pytest.mark.share(3)
+def test_module(report, command, scratch):
     """A program without its picture commands: all help is there, and pictures are refused in one line."""
-    alone = folder / "bin" / "tonewright"
+    alone = scratch / "bin" / "tonewright"
     alone.parent.mkdir()
     shutil.copy(command, alone)
     for arguments in (["--version"], ["--help"], *([name, "--help"] for name in SUBCOMMANDS)):
         report.check(f"{' '.join(arguments)} needs no picture commands",
                      call(alone, arguments) == call(command, arguments))
-    module = folder / "libexec" / "tonewright" / "picture_commands.so"
+    module = scratch / "libexec" / "tonewright" / "picture_commands.so"
     for arguments in (["apply", "in.exr", "out.png", "--operator", "hable"], ["chart", "-o", "chart.exr"],
                       ["bake", "hable", "--input", "lin_rec709", "--format", "hald", "-o", "hald.png"], ["bake", "--all", "luts"],
                       ["eval", "--lut", "hald.png"], ["verify", "hable", "--picture", "in.exr"],
                       ["plot", "hable", "-o", "plot.png"]):
-        code, out, err = call(alone, arguments, folder=folder)
+        code, out, err = call(alone, arguments, folder=scratch)
         report.check(f"{' '.join(arguments)} without picture commands",
                      code == FILE and not out and err.count("\n") == 1
                      and err.startswith("tonewright: start: cannot load the picture commands: ")
                      and str(module) in err, f"exit {code}: {out}{err}")
     module.parent.mkdir(parents=True)
     module.write_bytes(b"not a library")
-    code, _, err = call(alone, ["chart", "-o", "chart.exr"], folder=folder)
+    code, _, err = call(alone, ["chart", "-o", "chart.exr"], folder=scratch)
     report.check("a damaged module", code == FILE and err.count("\n") == 1 and str(module) in err, err)
     # Any shared library without the entry point: it is of no build at all.
     libraries = subprocess.run(["ldd", command], capture_output=True, text=True, check=True).stdout
     shutil.copy(next(word for word in libraries.split() if word.startswith("/") and "libfmt" in word), module)
-    code, _, err = call(alone, ["chart", "-o", "chart.exr"], folder=folder)
+    code, _, err = call(alone, ["chart", "-o", "chart.exr"], folder=scratch)
     report.check("a module of another build", code == FILE and err.count("\n") == 1 and "another build" in err, err)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    need_program("oiiotool", "openimageio-tools")
-    os.environ.pop("OCIO", None)
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
-        scratch = Path(folder)
-        picture, config = scratch / "small.exr", scratch / "config"
-        run(command, "chart", "-o", picture, "--width", 640, "--height", 360, "-d", "half")
-        run(command, "config", "-o", config, "--views", "hable")
-        bad = make_bad_pictures(scratch, picture)
-
-        jobs = []
-
-        def add(check, *arguments, in_folder=True):
-            """A check, to run beside the others; those that write get a folder of their own."""
-            if in_folder:
-                own = scratch / check.__name__
-                own.mkdir()
-                arguments = (own, *arguments)
-            jobs.append((check, (report, command, *arguments)))
-
-        for check, *arguments in share_of([
-                (check_apply,), (check_statistics,), (check_frames, picture), (check_bake,), (check_exact_forms,), (check_verify, config, picture),
-                (check_archive,), (check_chart, picture), (check_sheet, picture), (check_full_disks,),
-                (check_apply_many, picture), (check_limits, picture), (check_module,)], 3):
-            add(check, *arguments)
-        for check in (check_start, check_help, check_list, check_eval_text, check_engines, check_names, check_coprocess):
-            add(check, in_folder=False)
-        errors = [(USAGE, *case) for case in usage_errors(bad, picture)]
-        errors += [(FILE, *case) for case in file_errors(bad, picture, scratch)]
-        for number, case in enumerate(share_of_refusals(errors, lambda case: case[1], 4)):
-            add(check_error, scratch, number, *case, in_folder=False)
-        for number, case in enumerate(old_files(bad, picture)):
-            add(check_old_file, scratch, number, *case, in_folder=False)
-
-        def run_job(job):
-            check, arguments = job
-            try:
-                check(*arguments)
-            except Exception as error:  # a program that had to succeed, or what it wrote is not what it should be
-                report.check(check.__name__, False, repr(error))
-
-        list(pool.map(run_job, jobs))
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -1,28 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The operator catalogue of `tonewright_tools catalogue`: nothing is missing, and what it shows is so.
 
-    python3 tests/cli/test_catalogue.py build/release/bin/tonewright
-
 Plots are read back from their SVG files and held to `tonewright eval`, to formulas written here, and distances between
 dialects to a recomputation in NumPy: samples, code values and dE ITP. The committed catalogue is the one that is
-written here, as tests/parity/test_artifacts.py has it. The last line is `N passed, M failed`.
+written here, as tests/parity/test_artifacts.py has it.
 """
 
-import argparse
 import json
 import re
 import subprocess
-import sys
-import tempfile
 import xml.etree.ElementTree as ElementTree
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity"))
-from test_artifacts import compare_folder, page_differs  # noqa: E402
-from pictures import PROJECT, Report, evaluate, run, share_of  # noqa: E402
+import pytest
+from pictures import PROJECT, evaluate, run
+from test_artifacts import compare_folder, page_differs
 
 SVG = "{http://www.w3.org/2000/svg}"
 MID_GRAY = 0.18
@@ -205,12 +197,75 @@ def read_pages(folder):
     return {"index": (folder / "operators.md").read_text(), **pages, **dict(zip(parts[1::2], parts[2::2]))}
 
 
+# A catalogue that the command writes anew: of an operator that is gone, and of somebody else.
+OLD = {"curves/MANIFEST.csv": "path,shows\nold.svg,old\n", "curves/old.svg": "of an operator that is gone",
+       "curves/own.txt": "of somebody else", "operators/MANIFEST.csv": "path,shows\nold.md,old\n",
+       "operators/old.md": "of an operator that is gone", "MANIFEST.csv": "path\nown.md\n", "own.md": "of somebody else"}
+
+
+def listed(config):
+    return json.loads(run(config.getoption("--tonewright").resolve(), "list", "--json"))["operators"]
+
+
+def groups_of(operators):
+    """Name -> operators that are dialects of one."""
+    groups = {}
+    for op in operators:
+        groups.setdefault(op["dialects"], []).append(op)
+    return {name: members for name, members in groups.items() if name and len(members) > 1}
+
+
+def pytest_generate_tests(metafunc):
+    """A test for each operator, and for each group of dialects."""
+    if "operator" in metafunc.fixturenames:
+        metafunc.parametrize("operator", listed(metafunc.config), ids=lambda op: op["id"])
+    if "group" in metafunc.fixturenames:
+        metafunc.parametrize("group", groups_of(listed(metafunc.config)))
+
+
+@pytest.fixture(scope="module")
+def operators(request):
+    return listed(request.config)
+
+
+@pytest.fixture(scope="module")
+def groups(operators):
+    return groups_of(operators)
+
+
+@pytest.fixture(scope="module")
+def written(command, tmp_path_factory):
+    """The folder of a fresh catalogue, and the files of OLD that are still there."""
+    folder = tmp_path_factory.mktemp("catalogue").resolve() / "docs"
+    for name, text in OLD.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    run(f"{command}_tools", "catalogue", "-o", folder)
+    kept = {name for name in OLD if (folder / name).exists()}
+    (folder / "curves" / "own.txt").unlink()
+    return folder, kept
+
+
+@pytest.fixture(scope="module")
+def folder(written):
+    return written[0]
+
+
+@pytest.fixture(scope="module")
+def pages(folder):
+    return read_pages(folder)
+
+
+def test_old_files(report, written):
+    report.check("page and plot of an operator that is gone are removed, nothing else",
+                 OLD.keys() - written[1] == {"curves/old.svg", "operators/old.md"}, sorted(written[1]))
+
+
 def slug(name):
     return re.sub("[^a-z0-9]+", "_", name.lower()).strip("_")
 
 
-def check_pages(report, folder, operators, groups):
-    pages = read_pages(folder)
+def test_pages(report, folder, pages, operators, groups):
     index, bad = pages["index"], []
     for op in operators:
         name = op["id"]
@@ -261,10 +316,9 @@ def check_pages(report, folder, operators, groups):
     report.check("the manifest names the pages", sorted(manifest) == sorted(path.name for path in paths[1:]))
     # Looks and presets that are meant to differ are not dialects, and an operator alone is none.
     report.check("as many groups as there are", len(re.findall('<a id="dialects_', pages["dialects"])) == len(groups))
-    return pages
 
 
-def check_files(report, folder, operators, groups):
+def test_files(report, folder, operators, groups):
     expected = {f"{op['id']}.svg" for op in operators}
     for name in groups:
         expected |= {f"dialects_{slug(name)}.svg", f"dialects_{slug(name)}_colors.svg"}
@@ -320,7 +374,8 @@ def of_scene(stops, color):
     return scene(stops)[:, None] * color
 
 
-def check_operator(report, command, folder, pages, operator):
+@pytest.mark.share(2)
+def test_operator(report, command, folder, pages, operator):
     """Every line and patch of a plot, and the figures of its row and section."""
     name = operator["id"]
     plot = Plot(folder / "curves" / f"{name}.svg")
@@ -394,7 +449,7 @@ def check_operator(report, command, folder, pages, operator):
         report.check(f"{name}: {words}", low <= level <= high, f"{low} and {high}, expected {level} between")
 
 
-def check_formulas(report, folder):
+def test_formulas(report, folder):
     """Plots against formulas of the papers, not the program's own evaluation."""
     for name, line, formula in (("clamp", "default", lambda x: np.minimum(x, 1)),
                                 ("reinhard", "default", lambda x: x / (1 + x)),
@@ -408,9 +463,10 @@ def check_formulas(report, folder):
             report.bound(f"{name}: the formula, {channel}", np.abs(values - shown).max() * unit, POINT)
 
 
-def check_group(report, command, folder, pages, group, members):
+@pytest.mark.share(2)
+def test_group(report, command, folder, pages, groups, group):
     """Lines, patches, rows of one group of dialects."""
-    names = [f"{op['id']}{preset}" for op in members for preset in ["", *(":" + p["id"] for p in op["presets"])]]
+    names = [f"{op['id']}{preset}" for op in groups[group] for preset in ["", *(":" + p["id"] for p in op["presets"])]]
     text = pages[f"dialects_{slug(group)}"]
     plot = Plot(folder / "curves" / f"dialects_{slug(group)}.svg")
     chart = Plot(folder / "curves" / f"dialects_{slug(group)}_colors.svg")
@@ -449,8 +505,15 @@ def check_group(report, command, folder, pages, group, members):
     report.check(f"{group}: patches", off <= 0.5 + DIGITS, f"{off} codes of 8 bits")
 
 
-def check_distances(report, command, pages, group, a, b):
-    """Figures of a pair, recomputed: own samples, `tonewright eval`, own dE ITP."""
+@pytest.mark.share(3)
+def test_distances(report, command, pages, groups):
+    """Figures of a pair, recomputed: own samples, `tonewright eval`, own dE ITP.
+
+    One pair is as good as all: what is measured does not know which operators it is of. Half a million colors through `eval` take
+    seconds.
+    """
+    name = "AgX" if "AgX" in groups else next(iter(groups))
+    a, b = [op["id"] for op in groups[name][:2]]
     samples = non_negative_samples()
     count = int(re.search(r"measured on the (\d+) colors", pages["dialects"])[1])
     # Colors on the hull of a wide gamut: rounding decides which have a channel below 0.
@@ -460,7 +523,7 @@ def check_distances(report, command, pages, group, a, b):
     delta_e = 720 * np.linalg.norm(itp(code[0]) - itp(code[1]), axis=1)
     expected = [difference.max(), np.percentile(difference, 99.9), difference.mean(), delta_e.max(), delta_e.mean()]
     found = re.search(rf"^\| \w+ `{a}`, \w+ `{b}` \| (\S+) \| (\S+) \| (\S+) \| (\S+) \| (\S+) \|$",
-                      pages[f"dialects_{slug(group)}"], re.M)
+                      pages[f"dialects_{slug(name)}"], re.M)
     for what, shown, value, digit in zip(("max", "99.9 %", "mean", "dE max", "dE mean"), map(float, found.groups()),
                                          expected, (0.1, 0.1, 0.01, 0.1, 0.01)):
         # Half of the last digit, and the few samples that may be others.
@@ -468,12 +531,11 @@ def check_distances(report, command, pages, group, a, b):
                      0.5 * digit + 1e-3 * value)
 
 
-def check_committed(report, folder):
+def test_committed(report, folder):
     """The files of docs/ equal those that the command writes. `./run artifacts` writes them again."""
     committed = PROJECT / "docs"
     if not (committed / "curves").is_dir():
-        print("skipped: docs/curves is not in the source folder; `./run artifacts` writes it")
-        return
+        pytest.skip("docs/curves is not in the source folder; `./run artifacts` writes it")
     compare_folder(report, committed / "curves", folder / "curves")
     names = {path.name for side in (committed, folder) for path in (side / "operators").iterdir()}
     for name in ["operators.md", *(f"operators/{name}" for name in sorted(names))]:
@@ -482,7 +544,7 @@ def check_committed(report, folder):
         report.check(f"docs/{name}", difference is None, difference)
 
 
-def check_errors(report, command, scratch):
+def test_errors(report, command, scratch):
     (scratch / "file").write_text("")
     for what, line, code, words in (
             ("the old option", [command, "list", "--catalogue", scratch / "new"], 2, "use build/release/bin/tonewright_tools catalogue -o"),
@@ -494,59 +556,3 @@ def check_errors(report, command, scratch):
         report.check(f"error: {what}", done.returncode == code and words in done.stderr
                      and done.stderr.startswith("tonewright: ") and done.stderr.count("\n") == 1
                      and not (scratch / "new").exists(), done.stderr)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    operators = json.loads(run(command, "list", "--json"))["operators"]
-    groups = {}
-    for op in operators:
-        groups.setdefault(op["dialects"], []).append(op)
-    groups = {name: members for name, members in groups.items() if name and len(members) > 1}
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as scratch, ThreadPoolExecutor() as pool:
-        folder = Path(scratch).resolve() / "docs"
-        curves = folder / "curves"
-        curves.mkdir(parents=True)
-        (curves / "MANIFEST.csv").write_text("path,shows\nold.svg,old\n")
-        (curves / "old.svg").write_text("of an operator that is gone")
-        (curves / "own.txt").write_text("of somebody else")
-        (folder / "operators").mkdir()
-        (folder / "operators" / "MANIFEST.csv").write_text("path,shows\nold.md,old\n")
-        (folder / "operators" / "old.md").write_text("of an operator that is gone")
-        (folder / "MANIFEST.csv").write_text("path\nown.md\n")
-        (folder / "own.md").write_text("of somebody else")
-        run(f"{command}_tools", "catalogue", "-o", folder)
-        report.check("page and plot of an operator that is gone are removed, nothing else", not (curves / "old.svg").exists()
-                     and not (folder / "operators" / "old.md").exists()
-                     and (curves / "own.txt").exists() and (folder / "own.md").exists())
-        (curves / "own.txt").unlink()
-        check_committed(report, folder)
-        pages = check_pages(report, folder, operators, groups)
-        check_files(report, folder, operators, groups)
-        check_formulas(report, folder)
-        check_errors(report, command, Path(scratch))
-        jobs = [(check_operator, op["id"], (op,)) for op in share_of(operators, 2)]
-        jobs += [(check_group, name, (name, members)) for name, members in share_of(groups.items(), 2)]
-
-        def run_job(job):
-            check, what, arguments = job
-            try:
-                check(report, command, folder, pages, *arguments)
-            except Exception as error:  # what is looked for is not there
-                report.check(what, False, repr(error))
-
-        list(pool.map(run_job, jobs))
-        # One pair is as good as all: what is measured does not know which operators it is of. Half a million colors
-        # through `eval` take seconds.
-        if not share_of([*[False] * 2, True], 3)[0]:
-            return report.finish()
-        group = "AgX" if "AgX" in groups else next(iter(groups))
-        check_distances(report, command, pages, group, *[op["id"] for op in groups[group][:2]])
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

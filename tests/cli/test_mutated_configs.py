@@ -1,29 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Configs with one thing wrong: `config --into`, `--update`, `--remove` and `verify --config` end with one line.
 
-    python3 tests/cli/test_mutated_configs.py build/release/bin/tonewright [--seed N] [--count N]
-
 The script makes valid configs of several profiles, changes one thing in each, and runs the commands. A mutant may stay
 valid, so success (0) and a file that is wrong (3) are right. Wrong usage (2) is right only for a name that is taken, and
 a failed check (1) only for findings that `verify` prints. A failure prints one line and leaves every file as it was.
-The last line is `N passed, M failed`.
+TONEWRIGHT_MUTANTS=FIRST-LAST selects others than the first ones.
 """
 
-import argparse
 import concurrent.futures
 import os
 import random
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity"))
-from pictures import ALL, Report  # noqa: E402
-from test_into import ACES, BY_HAND, OWN  # noqa: E402
+import pytest
+from pictures import ALL
+from test_into import ACES, BY_HAND, OWN
 
 # Everything that a config refers to by name: looks, named transforms, files, variables, rules, aliases.
 RICH = """ocio_profile_version: 2.1
@@ -187,6 +180,9 @@ class Mutator:
         return f"{path.name} is {kind}"
 
 
+FIRST, LAST = map(int, os.environ.get("TONEWRIGHT_MUTANTS", "0-399" if ALL else "0-29").split("-"))
+
+
 def files_of(folder):
     return {path.relative_to(folder): path.read_bytes() if path.is_file() else None for path in folder.rglob("*")}
 
@@ -248,46 +244,36 @@ def try_one(command, bases, root, home, seed):
     return f"{seed}: {kind}, {action}: {what[:100]!r}", wrong, done
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    parser.add_argument("--seed", type=int, default=0, help="the first mutant")
-    parser.add_argument("--count", type=int, default=400 if ALL else 30, help="mutants (default: %(default)s)")
-    parser.add_argument("--verbose", action="store_true", help="print what each command says")
-    options = parser.parse_args()
-    command = options.command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        root = Path(name)
-        home = root / "cache"
-        bases = {}
-        for kind, text in BASES.items():
-            bases[kind] = []
-            for state in ("plain", "extended"):
-                folder = root / f"{kind} {state}"
-                (folder / "luts").mkdir(parents=True)
-                (folder / "luts" / "film.cube").write_text(FILM)
-                (folder / "luts" / "log_a.spi1d").write_text(LOG)
-                (folder / "c.ocio").write_bytes(text.encode())
-                bases[kind].append(folder)
-            done = run(command, ["config", "--into", folder / "c.ocio", "--views", "hable", "-q"], home)
-            # The installed OpenColorIO may be older than the profile.
-            if "2.2" in kind and done.returncode == 3:
-                del bases[kind]
-                continue
-            report.check(f"{kind}: the config without a mutation", done.returncode == 0, done.stderr)
-        count = {}
-        with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            seeds = range(options.seed, options.seed + options.count)
-            for what, wrong, done in pool.map(lambda seed: try_one(command, bases, root, home, seed), seeds):
-                count[done.returncode] = count.get(done.returncode, 0) + 1
-                if wrong:
-                    report.check(what, False, wrong)
-                elif options.verbose:
-                    print(what, "->", done.returncode, done.stderr.strip()[:200])
-        report.check(f"{options.count} mutants; exit codes: {count}", count.get(0, 0) and count.get(3, 0))
-    return report.finish()
+@pytest.fixture(scope="module")
+def bases(command, folder):
+    """Kind -> folders of a plain and of an extended config, and what extended it."""
+    made = {}
+    for kind, text in BASES.items():
+        for state in ("plain", "extended"):
+            place = folder / f"{kind} {state}"
+            (place / "luts").mkdir(parents=True)
+            (place / "luts" / "film.cube").write_text(FILM)
+            (place / "luts" / "log_a.spi1d").write_text(LOG)
+            (place / "c.ocio").write_bytes(text.encode())
+        done = run(command, ["config", "--into", place / "c.ocio", "--views", "hable", "-q"], folder / "cache")
+        # The installed OpenColorIO may be older than the profile.
+        if not ("2.2" in kind and done.returncode == 3):
+            made[kind] = [folder / f"{kind} plain", place], done
+    return made
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+def test_bases(report, bases):
+    for kind, (_, done) in bases.items():
+        report.check(f"{kind}: the config without a mutation", done.returncode == 0, done.stderr)
+
+
+def test_mutants(report, command, folder, bases):
+    folders, count = {kind: folders for kind, (folders, _) in bases.items()}, {}
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        seeds = range(FIRST, LAST + 1)
+        for what, wrong, done in pool.map(lambda seed: try_one(command, folders, folder, folder / "cache", seed), seeds):
+            count[done.returncode] = count.get(done.returncode, 0) + 1
+            if wrong:
+                report.check(what, False, wrong)
+            print(what, "->", done.returncode, done.stderr.strip()[:200])
+    report.check(f"{len(seeds)} mutants; exit codes: {count}", count.get(0, 0) and count.get(3, 0))

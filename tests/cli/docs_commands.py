@@ -10,12 +10,11 @@ Fences of a page say what their text is:
 
 In an output, `...` stands for any text, or as a line of its own for any lines.
 
-    /usr/bin/python3 tests/cli/docs_commands.py PAGE build/release/bin/tonewright --record
+    /usr/bin/python3 tests/cli/docs_commands.py build/release/bin/tonewright PAGE...
 
-writes the pictures of a page; `./run artifacts` does.
+writes the pictures of pages; `./run artifacts` does. A command without a build beside it is an installed one.
 """
 
-import argparse
 import importlib.util
 import os
 import re
@@ -100,9 +99,9 @@ def missing(name, build):
     return None
 
 
-def follow(report, page, command, folder, is_installed=False):
+def follow(report, page, command, folder):
     """Returns (commands, what they print) of each block that ran, and the names that are missing."""
-    build = None if is_installed else command.parents[1]
+    build = command.parents[1] if (command.parents[1] / "CMakeCache.txt").exists() else None
     for name in ("src", "tests"):  # pages for developers show files
         (folder / name).symlink_to(PROJECT / name)
     environment = {**os.environ, "LC_ALL": "C.UTF-8", "EXAMPLES": str(DOCS / "examples"),
@@ -152,10 +151,10 @@ def is_same(shown, written, folder):
     return shown.exists() and shown.suffix != ".svg" and np.array_equal(*(read_rgb(path, folder) for path in (shown, written)))
 
 
-def check_page(report, name, command, folder, check=None, is_recording=False, is_installed=False):
+def check_page(report, name, command, folder, check=None, is_recording=False):
     """Follows docs/NAME.md in a folder; check(report, page, folder, said) tests what only this page has."""
     page = (DOCS / f"{name}.md").read_text()
-    said, lacking = follow(report, page, command.resolve(), folder, is_installed)
+    said, lacking = follow(report, page, command.resolve(), folder)
     if report.failed:
         return
     for path in re.findall(r"!\[.*?\]\((images/.*?)\)", page):
@@ -172,17 +171,13 @@ def check_page(report, name, command, folder, check=None, is_recording=False, is
         check(report, page, folder, said)
 
 
-def main(name, check=None):
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=Path)
-    parser.add_argument("--record", action="store_true", help="write the pictures of the page")
-    parser.add_argument("--installed", action="store_true", help="packages are installed; there is no build")
-    arguments = parser.parse_args()
+def main(command, *pages):
     report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        check_page(report, name, arguments.command, Path(scratch), check, arguments.record, arguments.installed)
+    for name in pages:
+        with tempfile.TemporaryDirectory() as scratch:
+            check_page(report, name, Path(command), Path(scratch), is_recording=True)
     return report.finish()
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv.pop(1)) if len(sys.argv) > 2 else __doc__)
+    sys.exit(main(*sys.argv[1:]) if len(sys.argv) > 2 else __doc__)

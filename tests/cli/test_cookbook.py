@@ -1,16 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/cookbook.md: all commands, what they print, and the pictures of the page.
-
-    python3 tests/cli/test_cookbook.py build/release/bin/tonewright [--record]
-
---record writes the pictures of the page; `./run artifacts` does. The last line is `N passed, M failed`.
-"""
+"""docs/cookbook.md: all commands, what they print, and the pictures of the page."""
 
 import re
-import sys
 
 import numpy as np
-from docs_commands import DOCS, ONE_CODE, main, read_rgb
+from docs_commands import DOCS, ONE_CODE, check_page, read_rgb
 
 # A page loads slowly with more.
 PICTURE_BYTES, PAGE_BYTES = 60_000, 250_000
@@ -29,5 +23,5 @@ def check(report, page, folder, _):
     report.compare("film.png is the formula", read_rgb(folder / "film.png", folder), srgb, ONE_CODE)
 
 
-if __name__ == "__main__":
-    sys.exit(main("cookbook", check))
+def test_page(report, command, scratch):
+    check_page(report, "cookbook", command, scratch, check)

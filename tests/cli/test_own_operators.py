@@ -1,15 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/own_operators.md: all commands, what they print, and the pictures of the page.
-
-    python3 tests/cli/test_own_operators.py build/release/bin/tonewright [--record]
-
---record writes the pictures of the page; `./run artifacts` does. The last line is `N passed, M failed`.
-"""
-
-import sys
+"""docs/own_operators.md: all commands, what they print, and the pictures of the page."""
 
 import numpy as np
-from docs_commands import ONE_CODE, main, read_rgb
+from docs_commands import ONE_CODE, check_page, read_rgb
 
 
 def soft(x, k=0.55):
@@ -33,5 +26,5 @@ def check(report, _, folder, said):
                        read_rgb(folder / "apply.png", folder), ONE_CODE)
 
 
-if __name__ == "__main__":
-    sys.exit(main("own_operators", check))
+def test_page(report, command, scratch):
+    check_page(report, "own_operators", command, scratch, check)

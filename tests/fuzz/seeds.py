@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(TESTS / "cli"))
+sys.path[:0] = [str(TESTS / folder) for folder in ("cli", "parity/clients", "../python_check")]
 from test_lut_files import FOREIGN, GOOD, RAW  # noqa: E402
 from test_lut_operators import nodes, shared_exponent, write_dds  # noqa: E402
 

@@ -1,28 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tonewright apply` warns of pictures that are made for a display already, and tone mapped a second time.
+"""`tonewright apply` warns of pictures that are made for a display already, and tone mapped a second time."""
 
-    python3 tests/cli/test_finished.py build/release/bin/tonewright [FOLDER_OF_THE_PYTHON_MODULE]
-
-The last line is `N passed, M failed`.
-"""
-
-import os
 import shutil
 import subprocess
-import sys
-import tempfile
 import warnings
-from pathlib import Path
 
 import numpy as np
+import pytest
+from pictures import share_of
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, share_of, skip  # noqa: E402
-
-try:
-    import OpenImageIO as oiio
-except ImportError:
-    skip("OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 REST = "; the operator clamp keeps the colors, --input lin_rec709 takes the numbers as scene-linear"
 
@@ -36,6 +23,14 @@ def write(path, kind, attributes=None):
     if not picture.write(str(path)):
         raise RuntimeError(picture.geterror())
     return path
+
+
+@pytest.fixture(scope="module")
+def folder(folder):
+    """With a picture for a display, and one of a scene."""
+    write(folder / "a.png", "uint8")
+    write(folder / "a.exr", "half")
+    return folder
 
 
 class Check:
@@ -59,7 +54,12 @@ class Check:
         self.report.check(what, lines == expected, f"{lines}; expected {expected}")
 
 
-def check_formats(c):
+@pytest.fixture
+def c(report, command, folder):
+    return Check(report, command, folder)
+
+
+def test_formats(c):
     finished = [
         ("a.png", "uint8", {}, "sRGB by default of PNG with integer pixels"),
         ("b.png", "uint16", {}, "sRGB by default of PNG with integer pixels"),
@@ -71,7 +71,6 @@ def check_formats(c):
         ("h.ppm", "uint8", {}, None),
         ("i.exr", "half", {"colorInteropID": "srgb_rec709_display"}, "sRGB by colorInteropID"),
     ]
-    write(c.folder / "a.png", "uint8")
     for name, kind, attributes, why in share_of(finished, 3):
         write(c.folder / name, kind, attributes)
         lines = c.run(name, "out.png", "--operator", "hable")
@@ -83,7 +82,6 @@ def check_formats(c):
     scenes = [("a.exr", "half", {}), ("b.hdr", "float", {}), ("c.tif", "float", {}), ("d.dpx", "uint16", {"oiio:BitsPerSample": 10}),
               ("f.exr", "half", {"colorInteropID": "srgb_rec709_scene"}),
               ("g.exr", "half", {"colorInteropID": "pq_rec2020_display"}), ("h.exr", "half", {"colorInteropID": "lin_ap1_scene"})]
-    write(c.folder / "a.exr", "half")
     for name, kind, attributes in share_of(scenes, 3):
         write(c.folder / name, kind, attributes)
         c.says(f"{name}: {kind} {attributes or ''}: a scene", c.run(name, "out.png", "--operator", "hable"), [])
@@ -95,7 +93,7 @@ def check_formats(c):
         c.report.check(f"{display}: a result of apply", len(c.run("sdr.png", "out.png", "--operator", "hable")) == 1)
 
 
-def check_operators(c):
+def test_operators(c):
     for options in (["--operator", "clamp"], ["--false-color"], ["--operator", "hable", "--mix", "0"], ["-q", "--operator", "hable"]):
         c.says(f"no warning: {' '.join(options)}", c.run("a.png", "out.png", *options), [])
     c.report.check("the default operator, too", "so agx_blender tone maps" in c.run("a.png", "out.png")[0])
@@ -114,7 +112,7 @@ def check_operators(c):
                    and not (c.folder / "strict.png").exists(), lines)
 
 
-def check_many(c):
+def test_many(c):
     (c.folder / "many").mkdir()
     for i in range(1, 5):
         shutil.copy(c.folder / "a.png", c.folder / "many" / f"f.{i:04d}.png")
@@ -130,28 +128,11 @@ def check_many(c):
            [f"-: {reason}"])
 
 
-def check_python(c, folder):
-    sys.path.insert(0, folder)
-    import tonewright
+def test_python(c, tw):
     for name, options, count in (("a.png", {}, 1), ("a.png", {"input": "sRGB"}, 0), ("a.exr", {}, 0)):
         with warnings.catch_warnings(record=True) as heard:
             warnings.simplefilter("always")
-            tonewright.tonemap_file(c.folder / name, c.folder / "python.png", "hable", **options)
+            tw.tonemap_file(c.folder / name, c.folder / "python.png", "hable", **options)
         c.report.check(f"Python: {name} {options or ''}", len(heard) == count and all(
             str(w.message).endswith('input="lin_rec709" takes the numbers as scene-linear') for w in heard),
             [str(w.message) for w in heard])
-
-
-def main():
-    report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        c = Check(report, os.path.abspath(sys.argv[1]), Path(scratch))
-        for check in (check_formats, check_operators, check_many):
-            check(c)
-        if len(sys.argv) > 2:
-            check_python(c, os.path.abspath(sys.argv[2]))
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,26 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """`--resize` of `tonewright apply` and `compare`: the expected pixels are those of `oiiotool --resize`, executed on the same linear picture.
 
-    python3 tests/cli/test_resize.py build/release/bin/tonewright [FOLDER_OF_THE_PYTHON_MODULE]
-
-The test makes its pictures with OpenImageIO's Python. The last line is `N passed, M failed`.
+The test makes its pictures with OpenImageIO's Python.
 """
 
-import os
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
+import pytest
+from pictures import need_program, run, share_of
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, need_program, run, share_of, skip  # noqa: E402
-
-try:
-    import OpenImageIO as oiio
-except ImportError:
-    skip("OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 # The filter adds floats in the same order in both programs. The engine of `clamp` and of matrices is within 1e-6 of the
 # reference (engine.h); light of this test is at most 1000.
@@ -97,7 +87,13 @@ class Check:
         self.report.compare(what, pixels, wanted, bound)
 
 
-def check_sizes(c):
+@pytest.fixture
+def c(report, command, scratch):
+    need_program("oiiotool", "openimageio-tools")
+    return Check(report, command, scratch)
+
+
+def test_sizes(c):
     sizes = (("50x20", "50x20"), ("50", "50x0"), ("100", "100x0"), ("50%", "50%"), ("150%", "150%"), ("33.3%", "33.3%"),
              ("1", "1x1"), ("300x10", "300x10"), ("1x1", "1x1"))
     cases = [(shape, size) for shape in ((101, 67), (200, 67), (64, 64)) for size in sizes]
@@ -115,7 +111,7 @@ def check_sizes(c):
     c.report.check("a picture has a pixel at least", read(c.path("result.exr"))[0].shape == (1, 1, 3))
 
 
-def check_operators(c):
+def test_operators(c):
     """The operator runs on the resized picture: also what measures it, meters it, or looks at neighborhoods."""
     path = write(c.path("scene.exr"), scene(90, 120, most=0.99))
     small = c.oiiotool(path, "40x30")
@@ -127,7 +123,7 @@ def check_operators(c):
         c.same(f"operator: {' '.join(options)}", is_, c.path("wanted.exr"), 2e-5)
 
 
-def check_windows(c):
+def test_windows(c):
     light = scene(40, 60)
     # Inside of the display window: the rest is black, as in the padded picture.
     path = write(c.path("crop.exr"), light, at=(30, 20), full=(0, 0, 120, 100))
@@ -155,7 +151,7 @@ def check_windows(c):
     c.report.check("and has its place", read(c.path("result.exr"))[1] == (-5, -3, 30, 20), f"is {read(c.path('result.exr'))[1]}")
 
 
-def check_alpha(c):
+def test_alpha(c):
     light = scene(60, 80, 4)
     light[..., 3] = 0
     light[10:40, 20:60, 3] = 1
@@ -184,7 +180,7 @@ def check_alpha(c):
     c.report.check("--alpha ignore: hidden color is shown", pixels.shape[2] == 3 and pixels[:, 10:, 0].min() > 0.99)
 
 
-def check_light(c):
+def test_light(c):
     """Encoded pictures are decoded first: the mean of black and white is light 0.5, not code 0.5."""
     lines = np.zeros((64, 64, 3), np.float32)
     lines[:, ::2] = 1
@@ -205,7 +201,7 @@ def check_light(c):
         c.report.compare(f"the same color: {' '.join(options)}", is_, read(c.path("whole.exr"))[0], 2e-5)
 
 
-def check_lamps(c):
+def test_lamps(c):
     """Light above 1 takes another filter: no rings, and the picture keeps its light."""
     lamp = np.full((64, 64, 3), 0.18, np.float32)
     lamp[30:34, 30:34] = 1000
@@ -243,7 +239,7 @@ def check_lamps(c):
     c.report.check("NaN and infinity", np.isfinite(pixels).all() and pixels[25, 25].min() > 0.99)
 
 
-def check_other_channels(c):
+def test_other_channels(c):
     light = scene(20, 20, 5)
     light[..., 3] = np.arange(20)[:, None]
     light[..., 4] = 7e8  # an id
@@ -255,7 +251,7 @@ def check_other_channels(c):
     c.same("gray", c.apply(gray, "15", *LINEAR), c.oiiotool(gray, "15x0", "--clamp:min=0:max=1"))
 
 
-def check_shape(c):
+def test_shape(c):
     light = scene(40, 60)
     path = write(c.path("wide.exr"), light, attributes={"PixelAspectRatio": np.float32(2).item()})
     for size, ratio in (("50%", 2), ("30", 2), ("60x20", 1), ("120x40", 1)):
@@ -275,7 +271,7 @@ def check_shape(c):
     c.report.check("a picture on its side: JPEG keeps the tag", stored == (20, 30, 3), f"is {stored}")
 
 
-def check_many(c):
+def test_many(c):
     """Folders, shots, pipes."""
     folder = c.path("shot")
     folder.mkdir()
@@ -318,7 +314,7 @@ def check_many(c):
     c.report.check("--meter-cache", pixels[0] == pixels[2] != pixels[1] == c.path("m.0001.exr").read_bytes())
 
 
-def check_refusals(c):
+def test_refusals(c):
     path = write(c.path("scene.exr"), scene(20, 20))
     expected = "expected WxH, W or P%, such as 1920x1080, 1920 or 50%"
     cases = [([f"--resize={text}"], 2, f"tonewright: apply: --resize is {text}; {expected}")
@@ -349,7 +345,7 @@ def check_refusals(c):
                        and len(done.stderr.splitlines()) == 1, done.stderr)
 
 
-def check_luts(c):
+def test_luts(c):
     """`apply --lut`: light is resized before the LUT's encoding."""
     run(c.command, "bake", "hable", "--input-encoding", "log2", "--size", "4096", "-o", c.path("hable.cube"), "-q")
     path = write(c.path("scene.exr"), scene(40, 60))
@@ -372,7 +368,7 @@ def check_luts(c):
                    done.stderr.strip().endswith("expected --input-encoding with it: without it, colors are passed unchanged"), done.stderr)
 
 
-def check_comparisons(c):
+def test_comparisons(c):
     """The pixels of `compare` are those of `apply`."""
     for path, options in ((write(c.path("scene.exr"), scene(80, 120, most=30.0)), []),
                           (write(c.path("code.exr"), scene(80, 120)), ["--input", "logc3"]),
@@ -398,7 +394,7 @@ def check_comparisons(c):
         np.array_equal(shown[y:y + 160, left:left + 240], plain) for y in range(shown.shape[0] - 159)), f"{shown.shape}")
 
 
-def check_provenance(c):
+def test_provenance(c):
     """The file says its size, and the next run does not repeat it."""
     path = write(c.path("scene.exr"), scene(40, 60))
     run(c.command, "apply", path, c.path("small.exr"), "--resize", "50%", "--operator", "hable", "--mix", "0.5", "-q")
@@ -417,17 +413,15 @@ def check_provenance(c):
     c.report.check("also of local operators, in other formats", "resize 30x20" in spec.getattribute("Software"))
 
 
-def check_python(c, folder):
-    sys.path.insert(0, folder)
-    import tonewright
+def test_python(c, tw):
     path = write(c.path("scene.exr"), scene(40, 60))
     for size in ("30x20", 30, "50%"):
-        tonewright.tonemap_file(path, c.path("python.exr"), "hable", display="linear", resize=size)
+        tw.tonemap_file(path, c.path("python.exr"), "hable", display="linear", resize=size)
         run(c.command, "apply", path, c.path("one.exr"), "--resize", size, "-q", "--operator", "hable",
             "--display", "linear")
         c.report.check(f"Python: {size!r}", c.path("python.exr").read_bytes() == c.path("one.exr").read_bytes())
     try:
-        tonewright.tonemap_file(path, c.path("python.exr"), "hable", resize=0)
+        tw.tonemap_file(path, c.path("python.exr"), "hable", resize=0)
         said = ""
     except ValueError as error:
         said = str(error)
@@ -437,36 +431,18 @@ def check_python(c, folder):
     wanted = read(c.path("one.exr"))[0]
     for name, image, options in (("array", light, {}), ("array, channels first", np.moveaxis(light, -1, 0), {"axis": 0}),
                                  ("ImageBuf", oiio.ImageBuf(str(path)), {})):
-        shown = tonewright.tonemap(image, "reinhard_extended", resize="30x20", **options)
+        shown = tw.tonemap(image, "reinhard_extended", resize="30x20", **options)
         if name == "ImageBuf":
             shown = shown.get_pixels(oiio.FLOAT)
         c.report.compare(f"Python: tonemap of an {name}", np.moveaxis(shown, 0, -1) if options else shown, wanted, NEAR)
-    flat = tonewright.tonemap(light[..., 0], "hable", resize=30)
+    flat = tw.tonemap(light[..., 0], "hable", resize=30)
     c.report.check("Python: tonemap of a gray array", flat.shape == (20, 30), f"is {flat.shape}")
     for options, message in (({"resize": "9999999x9999"}, "pixels; expected at most 1000000000 in all"),
                              ({"resize": "50%", "roi": oiio.ROI(0, 9, 0, 9)}, "roi is given with resize; expected one of them")):
         try:
-            tonewright.tonemap(oiio.ImageBuf(str(path)), "hable", **options)
+            tw.tonemap(oiio.ImageBuf(str(path)), "hable", **options)
             raised = ""
         except ValueError as error:
             raised = str(error)
         c.report.check(f"Python: tonemap refuses {options}", message in raised, raised)
     c.report.check("Python: refused", said == "resize is 0; expected WxH, W or P%, such as 1920x1080, 1920 or 50%", said)
-
-
-def main():
-    need_program("oiiotool", "openimageio-tools")
-    report = Report()
-    command = os.path.abspath(sys.argv[1])
-    with tempfile.TemporaryDirectory() as scratch:
-        c = Check(report, command, Path(scratch))
-        for check in (check_sizes, check_operators, check_windows, check_alpha, check_light, check_lamps, check_other_channels,
-                      check_shape, check_many, check_luts, check_comparisons, check_provenance, check_refusals):
-            check(c)
-        if len(sys.argv) > 2:
-            check_python(c, sys.argv[2])
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

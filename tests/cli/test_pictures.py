@@ -1,29 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """`tonewright apply` on pictures of every kind: each pixel is what `tonewright eval` makes of its color.
 
-    python3 tests/cli/test_pictures.py build/release/bin/tonewright
-
 Pictures are made and read with OpenImageIO's Python; real ones join where they are found, see
-pictures.shared_picture. The last line is `N passed, M failed`.
+pictures.shared_picture.
 """
 
-import argparse
 import os
 import struct
 import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
+import pytest
+from pictures import evaluate, run, share_of, shared_picture, skip
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, evaluate, run, share_of, shared_picture, skip  # noqa: E402
-
-try:
-    import OpenImageIO as oiio
-except ImportError:
-    skip("OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 # Both run the SIMD engine, but on other rows of matrices: what is decoded or converted here in double is one float
 # away from what the engine computes inside, and the engine is within 1e-6 of the reference (engine.h).
@@ -125,7 +116,7 @@ def divisor(color, alpha, most=16):
 
 class Check:
     def __init__(self, report, command, scratch):
-        self.report, self.command, self.scratch = report, command, Path(scratch)
+        self.report, self.command, self.scratch = report, command, scratch
 
     def apply(self, path, *options):
         out = self.scratch / "out.exr"
@@ -173,7 +164,13 @@ class Check:
         return shown
 
 
-def check_files(check, scratch):
+@pytest.fixture
+def check(report, command, scratch):
+    return Check(report, command, scratch)
+
+
+@pytest.mark.share(2)
+def test_files(check, scratch):
     """Formats, layouts, sizes."""
     rgb, rgba, five = picture(37, 53, 3), picture(37, 53, 4), picture(20, 30, 5)
     rgba[..., 3] = np.linspace(0, 1, rgba[..., 3].size).reshape(rgba.shape[:2])
@@ -208,7 +205,8 @@ def check_files(check, scratch):
     check.same("float TIFF", write(scratch / "f.tif", spec_of(rgb), rgb))
 
 
-def check_color(check, scratch):
+@pytest.mark.share(2)
+def test_color(check, scratch):
     """The picture's metadata about its color."""
     rgb = np.clip(picture(24, 24, 3), 0, 1)
     check.same("16-bit PNG, sRGB", write(scratch / "a.png", spec_of(rgb, "uint16"), rgb), EXACT, decode=srgb_decode)
@@ -280,7 +278,8 @@ def subsampled_exr():
             + struct.pack("<ii", 0, len(first)) + first + struct.pack("<ii", 1, len(second)) + second)
 
 
-def check_parts(check, scratch):
+@pytest.mark.share(2)
+def test_parts(check, scratch):
     """Multi-part and multi-view files, and levels: --subimage, the first by default."""
     parts = [picture(12, 16, 3), picture(9, 7, 3), picture(12, 16, 3)]
     specs = []
@@ -305,20 +304,22 @@ def check_parts(check, scratch):
     fails(check, "a part that is not there", path, 3, "it has no subimage 3; the first is 0", "--subimage", "3")
 
 
-def check_real(check):
+def test_real(check):
     """Whole pictures of every kind that OpenEXR's collection has, half of them by the commit."""
     kinds = {"Desk.exr": {"alpha": 3, "bound": 1e-7}, "CandleGlass.exr": {"alpha": 3, "bound": 1e-6}, "t05.exr": {},
              "StageEnvLatLong.exr": {}, "memorial.hdr": {}, "composited.exr": {"alpha": 3, "bound": 1e-7},
              "XYZ.exr": {"matrix": to_rec709((1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3)), "bound": EXACT},
              "Tree.exr": {"alpha": 3, "bound": EXACT, "matrix": to_rec709(
                  (0.62955, 0.341, 0.2867, 0.6108, 0.1489, 0.07125, 0.3155, 0.33165))}}
-    for name, kind in share_of(kinds.items(), 2):
-        path = shared_picture(name)
-        if path:
-            check.same(name, path, **kind)
+    found = [(path, kind) for name, kind in share_of(kinds.items(), 2) if (path := shared_picture(name))]
+    for path, kind in found:
+        check.same(path.name, path, **kind)
+    if not found:
+        skip("real pictures (TONEWRIGHT_SHARED)")
 
 
-def check_writing(check, scratch):
+@pytest.mark.share(2)
+def test_writing(check, scratch):
     """Where the result goes, what it says, and what the user hears of it."""
     report = check.report
 
@@ -412,13 +413,12 @@ def check_writing(check, scratch):
                  and not list(folder.glob(".window*")), said)
 
 
-def check_hostile(check):
+def test_hostile(check):
     """Files that were made to break readers, where they are found."""
     folder = os.environ.get("TONEWRIGHT_SHARED")
     folder = Path(folder) / "data" / "hostile" if folder else None
     if not folder or not folder.is_dir():
-        print("skipped: hostile files (TONEWRIGHT_SHARED)")
-        return
+        skip("hostile files (TONEWRIGHT_SHARED)")
     path = folder / "fits.fits"
     pixels, _ = read(path)
     shown, _ = check.apply(path, "--input", "lin_rec709")
@@ -427,21 +427,3 @@ def check_hostile(check):
                          check.expected(pixels, pixels[..., 3]).astype(np.float32), 1e-7)
     fails(check, "half a DPX file", folder / "half.dpx", 3, "the file is truncated")
     fails(check, "93 bytes that declare a row of millions", folder / "wide_93_bytes.exr", 3, "in 93 bytes")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
-        check = Check(report, command, folder)
-        for part in share_of([check_files, check_color, check_parts, check_writing], 2):
-            part(check, Path(folder))
-        check_hostile(check)
-        check_real(check)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

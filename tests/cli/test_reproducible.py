@@ -1,27 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """The same bytes in another time zone, locale, umask, number of cores, and from another path of the program.
 
-    python3 tests/cli/test_reproducible.py build/release/bin/tonewright [OTHER_COMMAND]
-
 All shipped LUTs, the config, a shader, numbers, pictures and a page, each written twice without a cache. Pictures that no other
-picture gives a date take that of SOURCE_DATE_EPOCH. OTHER_COMMAND is the command of another build: then that one writes the
-second files. The last line is `N passed, M failed`.
+picture gives a date take that of SOURCE_DATE_EPOCH. --other names the command of another build: that one writes the second
+files.
 """
 
-import argparse
 import filecmp
 import os
 import shutil
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
+import pytest
 
 # Both write decimal commas; Turkish has another lower case of I.
 LOCALES = ("de_DE", "tr_TR")
+CORES = sorted(os.sched_getaffinity(0))
 JOBS = {
     "eval": "printf '0.18 1 2\\n' | tonewright eval agx_blender >numbers.txt",
     "shader": "tonewright shader aces_20 --language glsl -q -o shader.glsl",
@@ -67,42 +61,41 @@ def files(folder):
             if path.is_file() and not str(path.relative_to(folder)).startswith(".")}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    parser.add_argument("other", type=Path, nargs="?")
-    arguments = parser.parse_args()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        scratch = Path(name)
-        locales = scratch / "locales"
-        locales.mkdir()
-        made = make_locales(locales)
-        if not made:
-            print("no locale could be made (Debian: locales); the second files are written in C.UTF-8")
-        cores = sorted(os.sched_getaffinity(0))
-        command = arguments.command.resolve()
-        first = scratch / "first"
-        run_jobs(report, command, first, locales, JOBS, "UTC", "C.UTF-8", "022", cores)
-        # 1700000000 seconds after 1970, by `date -u -d @1700000000`.
-        report.check("the date of a picture", b"2023:11:14 22:13:20" in (first / "chart.exr").read_bytes())
-        wrong = subprocess.run([command, "chart", "-o", scratch / "wrong.exr", "-q"], capture_output=True, text=True, check=False,
-                               env={**os.environ, "SOURCE_DATE_EPOCH": "today"})
-        report.check("a wrong SOURCE_DATE_EPOCH", wrong.returncode == 2 and "SOURCE_DATE_EPOCH is today" in wrong.stderr
-                     and not (scratch / "wrong.exr").exists(), wrong.stderr)
-        for number, locale in enumerate(made or ["C"]):
-            jobs = JOBS if number == 0 else SHORT_JOBS
-            folder = scratch / "elsewhere" / f"with a blank {number}"
-            run_jobs(report, (arguments.other or command).resolve(), folder, locales, jobs, "Asia/Kathmandu",
-                     f"{locale}.UTF-8", "077", cores[:1])
-            written = files(folder)
-            missing = files(first) - written if jobs == JOBS else written - files(first)
-            report.check(f"{locale}: {len(written)} files", written and not missing, missing)
-            differ = [path for path in sorted(written)
-                      if path not in missing and not filecmp.cmp(first / path, folder / path, shallow=False)]
-            report.check(f"{locale}: the same bytes", not differ, f"{len(differ)}: {differ[:10]}")
-    return report.finish()
+@pytest.fixture(scope="module")
+def locales(folder):
+    """The folder of LOCALES, and those that could be made in it."""
+    (folder / "locales").mkdir()
+    return folder / "locales", make_locales(folder / "locales")
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+@pytest.fixture
+def first(report, command, folder, locales):
+    """Files of all JOBS."""
+    if not (folder / "first").exists():
+        run_jobs(report, command, folder / "first", locales[0], JOBS, "UTC", "C.UTF-8", "022", CORES)
+    return folder / "first"
+
+
+def test_date(report, command, first, scratch):
+    # 1700000000 seconds after 1970, by `date -u -d @1700000000`.
+    report.check("the date of a picture", b"2023:11:14 22:13:20" in (first / "chart.exr").read_bytes())
+    wrong = subprocess.run([command, "chart", "-o", scratch / "wrong.exr", "-q"], capture_output=True, text=True, check=False,
+                           env={**os.environ, "SOURCE_DATE_EPOCH": "today"})
+    report.check("a wrong SOURCE_DATE_EPOCH", wrong.returncode == 2 and "SOURCE_DATE_EPOCH is today" in wrong.stderr
+                 and not (scratch / "wrong.exr").exists(), wrong.stderr)
+
+
+def test_elsewhere(request, report, command, folder, locales, first):
+    other = request.config.getoption("--other") or command
+    if not locales[1]:
+        print("no locale could be made (Debian: locales); the second files are written in C.UTF-8")
+    for number, locale in enumerate(locales[1] or ["C"]):
+        jobs = JOBS if number == 0 else SHORT_JOBS
+        place = folder / "elsewhere" / f"with a blank {number}"
+        run_jobs(report, other.resolve(), place, locales[0], jobs, "Asia/Kathmandu", f"{locale}.UTF-8", "077", CORES[:1])
+        written = files(place)
+        missing = files(first) - written if jobs == JOBS else written - files(first)
+        report.check(f"{locale}: {len(written)} files", written and not missing, missing)
+        differ = [path for path in sorted(written)
+                  if path not in missing and not filecmp.cmp(first / path, place / path, shallow=False)]
+        report.check(f"{locale}: the same bytes", not differ, f"{len(differ)}: {differ[:10]}")

@@ -1,31 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `tonewright apply` writes, and what other programs find in it: chroma of JPEG, AVIF, tags, light levels, alpha.
 
-    python3 tests/cli/test_output.py build/release/bin/tonewright
-
-Pictures are made and read with OpenImageIO's Python. The last line is `N passed, M failed`.
+Pictures are made and read with OpenImageIO's Python.
 """
 
-import argparse
 import json
 import subprocess
-import sys
-import tempfile
 import zlib
-from pathlib import Path
 
 import numpy as np
-
-try:
-    import OpenImageIO as oiio
-except ImportError:
-    oiio = None  # test_pictures skips
-
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from test_pictures import read, spec_of, write  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, share_of  # noqa: E402
+import pytest
+from pictures import share_of
+from test_pictures import oiio, read, spec_of, write
 
 OK, USAGE, FILE = 0, 2, 3
 
@@ -56,6 +42,11 @@ class Writer:
                           f"exit {is_code}: {said} {left}")
 
 
+@pytest.fixture
+def to(report, command, scratch):
+    return Writer(report, command, scratch)
+
+
 def png(folder, name, code):
     """Code values as an 8-bit PNG, which clamp maps to themselves."""
     return write(folder / name, spec_of(code, "uint8"), code.astype(np.float32))
@@ -74,7 +65,7 @@ def saturated_photograph(size=128):
     return colors[hue % 6] * shade
 
 
-def check_jpeg(to):
+def test_jpeg(to):
     lines = np.zeros((48, 48, 3))
     lines[:, 1::6, 0] = 1
     pictures = {"red lines of one pixel": lines, "a saturated photograph": saturated_photograph()}
@@ -122,7 +113,7 @@ INTEROP_IDS = {"srgb": "srgb_rec709_display", "display_p3": "srgb_p3d65_display"
                "p3d65_pq": "pq_p3d65_display", "linear": "lin_rec709_scene"}
 
 
-def check_exr_tags(to):
+def test_exr_tags(to):
     source = write(to.folder / "in.exr", spec_of(scene()), scene())
 
     def tags(*options, source=source):
@@ -184,7 +175,7 @@ def chunks(path):
     return found
 
 
-def check_light_levels(to):
+def test_light_levels(to):
     rgb = scene()
     pictures = {"rgb": write(to.folder / "rgb.exr", spec_of(rgb), rgb),
                 "gray": write(to.folder / "gray.exr", spec_of(rgb[..., :1]), rgb[..., :1]),
@@ -217,7 +208,7 @@ def srgb(light):
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
-def check_alpha(to):
+def test_alpha(to):
     # A surface, its edge, a flame without alpha, and glass: more light than its alpha carries.
     pixels = np.zeros((4, 8, 4), np.float32)
     pixels[:, :4] = (0.2, 0.1, 0.05, 1)
@@ -271,7 +262,7 @@ def check_alpha(to):
     to.report.check("no warning of surfaces and their edges", to.apply(solid, "o.png")[1] == "")
 
 
-def check_straight(to):
+def test_straight(to):
     """8-bit files with low alpha: their color is not multiplied in 8 bits while it is read."""
     color = np.array([200, 100, 50]) / 255
     code = np.zeros((4, 16, 4))
@@ -302,7 +293,7 @@ def check_straight(to):
 FORMATS = "png jpg webp tga bmp gif ico iff sgi dpx hdr ppm rla fits jp2 heic tif exr".split()
 
 
-def check_formats(to):
+def test_formats(to):
     """Every layout, in every format: written, and read back as what was to be written."""
     names = {1: ["Y"], 2: ["Y", "A"], 3: list("RGB"), 4: list("RGBA"), 5: [*"RGBA", "Z"]}
     for count, channels in names.items():
@@ -338,19 +329,3 @@ def check_formats(to):
     for option, words in (("--gamma", "--display"), ("--cdl", "--lut"), ("--channels", "oiiotool"), ("-pix_fmt", "-d uint8")):
         code_, said = to.apply(source, "no.png", option, "x")
         to.report.check(f"a hint for {option}", code_ == USAGE and words in said, said)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    for part in (check_jpeg, check_exr_tags, check_light_levels, check_alpha, check_straight,
-                 check_formats):
-        with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
-            part(Writer(report, command, Path(folder)))
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

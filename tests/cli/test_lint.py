@@ -1,24 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Findings of `tonewright verify --config`: each fault that a config can have, in one that has no other.
+"""Findings of `tonewright verify --config`: each fault that a config can have, in one that has no other."""
 
-    python3 tests/cli/test_lint.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import json
 import os
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
+import pytest
+from pictures import PROJECT
 
 # Without a fault: what the lint asks for and nothing else.
-GOOD = (Path(__file__).resolve().parents[1] / "data" / "good_config.ocio").read_text(encoding="utf-8")
+GOOD = (PROJECT / "tests" / "data" / "good_config.ocio").read_text(encoding="utf-8")
 LONG = "n" * 64
 CUBE = "LUT_3D_SIZE 2\n" + "".join(f"{i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8))
 # name -> (what is replaced, by what, level, where, words of what is said)
@@ -114,57 +105,66 @@ def lint(command, folder, text):
     return done.returncode, found, done.stderr
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        folder = Path(name)
-        code, found, err = lint(command, folder, GOOD)
-        report.check("a config without a fault", code == 0 and not found, f"{code} {found} {err}")
-        for what, fault in FAULTS.items():
-            old, new, level, where, words = fault
-            report.check(f"{what}: the fault is in the file", GOOD.count(old) == 1, old)
-            code, found, err = lint(command, folder, GOOD.replace(old, new))
-            hit = [f for f in found if f["level"] == level and f["where"] == where and words in f["what"]]
-            report.check(what, hit and code == (1 if level == "error" else 0), f"{code} {found} {err}")
-        for what, (changes, words) in REFUSED.items():
-            text = GOOD
-            for place, more in changes:
-                report.check(f"{what}: the place is in the file", text.count(place) == 1, place)
-                text = text.replace(place, place + more)
-            code, _, err = lint(command, folder, text)
-            path = folder / "config.ocio"
-            report.check(what, code == 3 and words in err and str(path) in err and err.count("\n") == 1, f"{code} {err}")
-            done = subprocess.run([command, "config", "--into", path, "--views", "clamp"], capture_output=True, text=True,
-                                  check=False, timeout=60)
-            report.check(f"{what}: --into", done.returncode == 3 and done.stderr == err and path.read_text() == text,
-                         f"{done.returncode} {done.stderr}")
-        # A view may be a space's, and spaces may share others, as long as none leads back.
-        shared = GOOD.replace(LAST, LAST + through("a", "aces") + through("b", "a") + through("c", "a") + space(
-            "shown", "from_scene_reference: !<DisplayViewTransform> {src: aces, display: sRGB, view: Plain}"))
-        code, found, err = lint(command, folder, shared)
-        errors = [f for f in found if f["level"] != "note"]
-        report.check("spaces that share others", code == 0 and not errors, f"{code} {found} {err}")
-        # OpenColorIO's own messages appear once, as messages of the command.
-        text = GOOD.replace(LAST, LAST.replace("encoding: data", "encoding: data, surprise: 1") + through("a", "aces"))
-        code, found, err = lint(command, folder, text)
-        report.check("OpenColorIO's own warning", code == 0 and err.count("\n") == 1 and "surprise" in err
-                     and err.startswith("tonewright: OpenColorIO: "), err)
-        # OpenColorIO 2.1 copies some words of a LUT into small buffers, whatever the length.
-        text = GOOD.replace(LAST, LAST + space("table", "to_scene_reference: !<FileTransform> {src: long.lut}"))
-        (folder / "luts" / "long.lut").write_text(f"LUT: 1 2 {'1' * 16}\n0\n255\n")
-        code, _, err = lint(command, folder, text)
-        report.check("a LUT with a long word", code == 3 and err.count("\n") == 1 and "long.lut: line 1: a word after two sizes"
-                     in err and "uses it as a LUT" in err, f"{code} {err}")
-        code, _, err = lint(command, folder, "not a config")
-        report.check("no config", code == 3 and err.count("\n") >= 1 and str(folder) in err, f"{code} {err}")
-        done = subprocess.run([command, "verify", "--no-gpu", "--config", folder / "none.ocio"], capture_output=True,
-                              text=True, check=False)
-        report.check("no file", done.returncode == 3 and "none.ocio" in done.stderr, done.stderr)
-    return report.finish()
+def test_good(report, command, scratch):
+    code, found, err = lint(command, scratch, GOOD)
+    report.check("a config without a fault", code == 0 and not found, f"{code} {found} {err}")
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+@pytest.mark.parametrize("what", FAULTS)
+def test_fault(report, command, scratch, what):
+    old, new, level, where, words = FAULTS[what]
+    report.check(f"{what}: the fault is in the file", GOOD.count(old) == 1, old)
+    code, found, err = lint(command, scratch, GOOD.replace(old, new))
+    hit = [f for f in found if f["level"] == level and f["where"] == where and words in f["what"]]
+    report.check(what, hit and code == (1 if level == "error" else 0), f"{code} {found} {err}")
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_refused(report, command, scratch, what):
+    changes, words = REFUSED[what]
+    text = GOOD
+    for place, more in changes:
+        report.check(f"{what}: the place is in the file", text.count(place) == 1, place)
+        text = text.replace(place, place + more)
+    code, _, err = lint(command, scratch, text)
+    path = scratch / "config.ocio"
+    report.check(what, code == 3 and words in err and str(path) in err and err.count("\n") == 1, f"{code} {err}")
+    done = subprocess.run([command, "config", "--into", path, "--views", "clamp"], capture_output=True, text=True, check=False,
+                          timeout=60)
+    report.check(f"{what}: --into", done.returncode == 3 and done.stderr == err and path.read_text() == text,
+                 f"{done.returncode} {done.stderr}")
+
+
+def test_shared(report, command, scratch):
+    """A view may be a space's, and spaces may share others, as long as none leads back."""
+    shared = GOOD.replace(LAST, LAST + through("a", "aces") + through("b", "a") + through("c", "a") + space(
+        "shown", "from_scene_reference: !<DisplayViewTransform> {src: aces, display: sRGB, view: Plain}"))
+    code, found, err = lint(command, scratch, shared)
+    errors = [f for f in found if f["level"] != "note"]
+    report.check("spaces that share others", code == 0 and not errors, f"{code} {found} {err}")
+
+
+def test_messages_of_opencolorio(report, command, scratch):
+    """OpenColorIO's own messages appear once, as messages of the command."""
+    text = GOOD.replace(LAST, LAST.replace("encoding: data", "encoding: data, surprise: 1") + through("a", "aces"))
+    code, _, err = lint(command, scratch, text)
+    report.check("OpenColorIO's own warning", code == 0 and err.count("\n") == 1 and "surprise" in err
+                 and err.startswith("tonewright: OpenColorIO: "), err)
+
+
+def test_long_word(report, command, scratch):
+    """OpenColorIO 2.1 copies some words of a LUT into small buffers, whatever the length."""
+    text = GOOD.replace(LAST, LAST + space("table", "to_scene_reference: !<FileTransform> {src: long.lut}"))
+    (scratch / "luts").mkdir()
+    (scratch / "luts" / "long.lut").write_text(f"LUT: 1 2 {'1' * 16}\n0\n255\n")
+    code, _, err = lint(command, scratch, text)
+    report.check("a LUT with a long word", code == 3 and err.count("\n") == 1 and "long.lut: line 1: a word after two sizes"
+                 in err and "uses it as a LUT" in err, f"{code} {err}")
+
+
+def test_no_config(report, command, scratch):
+    code, _, err = lint(command, scratch, "not a config")
+    report.check("no config", code == 3 and err.count("\n") >= 1 and str(scratch) in err, f"{code} {err}")
+    done = subprocess.run([command, "verify", "--no-gpu", "--config", scratch / "none.ocio"], capture_output=True, text=True,
+                          check=False)
+    report.check("no file", done.returncode == 3 and "none.ocio" in done.stderr, done.stderr)

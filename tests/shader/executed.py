@@ -3,25 +3,15 @@
 import csv
 import fcntl
 import json
-import os
 import pathlib
 import subprocess
-import sys
 
 import numpy as np
+from pictures import ALL as IS_FULL
+from pictures import skip
 
-IS_FULL = os.environ.get("TONEWRIGHT_TEST_ALL") == "1"
-SKIPPED = 77  # exit status that ctest counts as skipped
 # npm packages: Dawn for Node, a translator of SPIR-V, three.js, what drives a browser, and tone mappers in GLSL.
 PACKAGES = ["webgpu@0.6.2", "naga-wasm@30.1.0", "three@0.187.0", "playwright-core@1.65.1", "glsl-tone-map@2.2.0"]
-
-
-def skip(reason: str):
-    if "PYTEST_CURRENT_TEST" in os.environ:
-        import pytest  # scripts run without it
-        pytest.skip(reason)
-    print(f"skipped: {reason}")
-    sys.exit(SKIPPED)
 
 
 def npm_modules(tonewright: str) -> pathlib.Path:
@@ -70,9 +60,9 @@ def pick(rows: list, count: int) -> list:
 class Comparison:
     """Of what implementations of shaders show with what the double reference does."""
 
-    def __init__(self, tonewright: str, shaders: pathlib.Path):
+    def __init__(self, report, tonewright: pathlib.Path, shaders: pathlib.Path):
         """shaders: the folder that `tonewright shader --all FOLDER --display srgb` wrote."""
-        self.tonewright = tonewright
+        self.check, self.tonewright = report.check, tonewright
         self.rows = {}  # language -> rows of the manifest, of a dozen operators unless in full
         for row in csv.DictReader(open(shaders / "MANIFEST.csv")):
             self.rows.setdefault(row["path"].split("/")[0], []).append(row)
@@ -85,7 +75,7 @@ class Comparison:
         self.hostile = pick(names, 10) if IS_FULL else dozen
         self.all_rgb = np.concatenate([self.rgb, hostile_colors(1_000_000 if IS_FULL else 3_000)])
         self.truth = {}
-        self.failures = []
+        self.failures = {}  # language -> texts
         self.recorded = {}  # language -> function -> largest error
 
     def colors_of(self, row: dict) -> np.ndarray:
@@ -101,13 +91,13 @@ class Comparison:
         """got: of colors_of(row). is_as_written: no compiler may have rearranged operations; the guaranteed bound then
         has to hold."""
         what = f"{row['operator']} by {what}"
+        known, failures = self.recorded.setdefault(language, {}), self.failures.setdefault(language, [])
         rgb = self.colors_of(row)
         got = got.astype(float)
         if not np.isfinite(got).all():
-            self.failures.append(f"{what}: not finite for {rgb[~np.isfinite(got).all(axis=1)][0]}")
+            failures.append(f"{what}: not finite for {rgb[~np.isfinite(got).all(axis=1)][0]}")
             return
         error_of = np.abs(got - self.expected(row["operator"], rgb))
-        known = self.recorded.setdefault(language, {})
         known[row["function"]] = max(error_of[:len(self.rgb)].max(), known.get(row["function"], 0))
         # The estimate of the text: Vulkan's errors. Twice, because it is computed over probe colors. Where first order
         # says nothing: what float is enough for. Hostile colors, whose channels cancel, may be a code of 10 bits off:
@@ -117,26 +107,23 @@ class Comparison:
         bound[len(self.rgb):] = np.maximum(bound[len(self.rgb):], 1 / 1023)
         far = ~(error_of.max(axis=1) <= bound)
         if far.any():
-            self.failures.append(f"{what}: {error_of[far].max():.2g} off at {rgb[far][0]}; expected at most "
-                                 f"{bound[far][0]:.2g} ({far.sum()} colors)")
+            failures.append(f"{what}: {error_of[far].max():.2g} off at {rgb[far][0]}; expected at most "
+                            f"{bound[far][0]:.2g} ({far.sum()} colors)")
         # 1e-8: what the series of 1 - 2^x may be off.
         bounded = error_of[((rgb >= 0) & (rgb <= 65504)).all(axis=1)].max()
         if is_as_written and not bounded <= float(row["guaranteed"]) + 1e-8:
-            self.failures.append(f"{what}: {bounded:.2g} off; guaranteed are {row['guaranteed']}")
+            failures.append(f"{what}: {bounded:.2g} off; guaranteed are {row['guaranteed']}")
 
-    def report(self, implementations: str, record_file: str) -> int:
+    def finish(self, implementations: str, errors_file: pathlib.Path) -> None:
+        """A check for each language. errors_file: where the largest errors go, or None."""
         for language, errors in self.recorded.items():
             within = sum(error <= 2e-6 for error in errors.values())
-            worst = max(errors, key=errors.get)
-            print(f"{language}: {len(errors)} functions, {within} within 2e-6, worst {errors[worst]:.2g} ({worst}); "
-                  f"{implementations}")
-        if record_file:
-            path = pathlib.Path(record_file)
-            known = json.loads(path.read_text()) if path.exists() else {}
-            path.write_text(json.dumps(known | self.recorded, indent=1))
-        for failure in self.failures:
-            print(failure)
-        return 1 if self.failures else 0
+            worst = max(errors, key=errors.get, default="none")
+            self.check(f"{language}: {len(errors)} functions, {within} within 2e-6, worst {errors.get(worst, np.inf):.2g} ({worst}); "
+                       f"{implementations}", not self.failures[language], "\n     ".join(self.failures[language]))
+        if errors_file:
+            known = json.loads(errors_file.read_text()) if errors_file.exists() else {}
+            errors_file.write_text(json.dumps(known | self.recorded, indent=1))
 
 
 def reference(tonewright: str, operator: str, rgb: np.ndarray, *options: str) -> np.ndarray:
@@ -145,8 +132,3 @@ def reference(tonewright: str, operator: str, rgb: np.ndarray, *options: str) ->
     lines = subprocess.run([tonewright, "eval", operator, "--digits", "12", *options], input=text, check=True,
                            capture_output=True, text=True).stdout
     return np.array(lines.split(), float).reshape(-1, 3)
-
-
-def start(main) -> None:
-    """main(tonewright, folder of shaders, record_file), with the arguments of the command line."""
-    sys.exit(main(sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[4] if sys.argv[3:4] == ["--record"] else ""))

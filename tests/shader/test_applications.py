@@ -1,28 +1,23 @@
-#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Whole files that `tonewright shader --for APPLICATION` writes, drawn without the application.
 
 A stand-in takes the place of what each application puts around the file: a module of Bevy, an include of Unity, the
 Custom node of Unreal, the kernel of Resolve. Bevy, Unity and Unreal draw a picture on Dawn, Resolve's runs on pocl; all
 with a slider for exposure, against `tonewright eval`.
 
-Usage: test_applications.py TONEWRIGHT [--pictures FOLDER]
---pictures keeps what was drawn, as PNG.
+    python3 -m pytest tests/shader/test_applications.py --tonewright build/release/bin/tonewright [--screenshots FOLDER]
 """
+
 import pathlib
 import re
 import subprocess
-import sys
-import tempfile
 
 import numpy as np
-
 from dawn import Dawn, spirv_of
 from executed import reference
+from lut_encodings import srgb_encode
 from opencl import OpenCl, device
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import read_rgb  # noqa: E402, I001  (makes the next one findable)
-from lut_encodings import srgb_encode  # noqa: E402
+from pictures import read_rgb
 
 SIZE = (320, 180)
 STOPS = 0.5
@@ -123,52 +118,44 @@ def resolve(text: str, function: str, picture: np.ndarray) -> np.ndarray:
     return OpenCl({function: f"#define SLIDER {STOPS}f\n{text}"}, {function: call}).run(function, picture)
 
 
-def main(tonewright: str, pictures: str) -> int:
-    dawn = Dawn(tonewright)
-    device()
-    failures = 0
-    with tempfile.TemporaryDirectory() as folder_name:
-        folder = pathlib.Path(folder_name)
-        subprocess.run([tonewright, "chart", "-o", str(folder / "chart.exr"), "--width", str(SIZE[0]), "--height",
-                        str(SIZE[1]), "-d", "half", "-q"], check=True)
-        scene = read_rgb(folder / "chart.exr", folder).reshape(-1, 3).astype(np.float32)
-        np.concatenate([scene, np.ones((len(scene), 1))], 1).astype(np.float16).tofile(folder / "scene.half")
-        drawn, steps = {}, []
-        # Application -> how to draw its file, and what takes its values to code values of sRGB.
-        for application, prepare, display in (("bevy", bevy, "linear"), ("unity", unity, "linear"),
-                                              ("unreal", unreal, "srgb"), ("resolve", None, "rec1886")):
-            for operator in BOUNDS:
-                function = f"{application}_{operator}"
-                text = subprocess.run([tonewright, "shader", operator, "--for", application, "--uniforms", "exposure"],
-                                      check=True, capture_output=True, text=True).stdout
-                out = folder / f"{function}.out"
-                if prepare:
-                    steps.append(prepare(text, function, folder) | {"picture": str(folder / "scene.half"), "size": SIZE,
-                                                                    "out": str(out)})
-                else:
-                    shown = resolve(text, function, scene)
-                    np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(out)
-                drawn[application, operator] = out, display
-        adapter = dawn.run(steps)
-        for (application, operator), (out, display) in drawn.items():
-            shown = np.fromfile(out, np.float32).reshape(-1, 4)[:, :3].astype(float)
-            expected = reference(tonewright, operator, scene, "--display", display, "--exposure", str(STOPS))
-            to_light = {"linear": lambda x: x, "srgb": None, "rec1886": lambda x: x**2.4}[display]
-            codes = [srgb_encode(np.clip(to_light(x), 0, None)) if to_light else x for x in (shown, expected)]
-            error = np.abs(codes[0] - codes[1]).max()
-            print(f"{application} {operator}: largest error {error:.2g}, bound {BOUNDS[operator]:.2g}")
-            failures += not (error <= BOUNDS[operator] and codes[1].std() > 0.1)
-            if pictures:
-                write_png(codes[0], pathlib.Path(pictures) / f"{application}_{operator}.png")
-    print(f"{adapter}, pocl: {failures} failed")
-    return 1 if failures else 0
-
-
 def write_png(codes: np.ndarray, path: pathlib.Path) -> None:
     header = f"P6 {SIZE[0]} {SIZE[1]} 255\n".encode()
     path.with_suffix(".ppm").write_bytes(header + np.round(255 * np.clip(codes, 0, 1)).astype(np.uint8).tobytes())
     subprocess.run(["oiiotool", str(path.with_suffix(".ppm")), "-o", str(path)], check=True)
 
 
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], sys.argv[3] if sys.argv[2:3] == ["--pictures"] else ""))
+def test_files(request, report, command, scratch):
+    pictures = request.config.getoption("--screenshots")
+    dawn = Dawn(command)
+    device()
+    subprocess.run([command, "chart", "-o", str(scratch / "chart.exr"), "--width", str(SIZE[0]), "--height",
+                    str(SIZE[1]), "-d", "half", "-q"], check=True)
+    scene = read_rgb(scratch / "chart.exr", scratch).reshape(-1, 3).astype(np.float32)
+    np.concatenate([scene, np.ones((len(scene), 1))], 1).astype(np.float16).tofile(scratch / "scene.half")
+    drawn, steps = {}, []
+    # Application -> how to draw its file, and what takes its values to code values of sRGB.
+    for application, prepare, display in (("bevy", bevy, "linear"), ("unity", unity, "linear"),
+                                          ("unreal", unreal, "srgb"), ("resolve", None, "rec1886")):
+        for operator in BOUNDS:
+            function = f"{application}_{operator}"
+            text = subprocess.run([command, "shader", operator, "--for", application, "--uniforms", "exposure"],
+                                  check=True, capture_output=True, text=True).stdout
+            out = scratch / f"{function}.out"
+            if prepare:
+                steps.append(prepare(text, function, scratch) | {"picture": str(scratch / "scene.half"), "size": SIZE,
+                                                                 "out": str(out)})
+            else:
+                shown = resolve(text, function, scene)
+                np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(out)
+            drawn[application, operator] = out, display
+    adapter = dawn.run(steps)
+    for (application, operator), (out, display) in drawn.items():
+        shown = np.fromfile(out, np.float32).reshape(-1, 4)[:, :3].astype(float)
+        expected = reference(command, operator, scene, "--display", display, "--exposure", str(STOPS))
+        to_light = {"linear": lambda x: x, "srgb": None, "rec1886": lambda x: x**2.4}[display]
+        codes = [srgb_encode(np.clip(to_light(x), 0, None)) if to_light else x for x in (shown, expected)]
+        error = np.abs(codes[0] - codes[1]).max()
+        report.bound(f"{application} {operator}", error, BOUNDS[operator])
+        report.check(f"{application} {operator}: it is a picture", codes[1].std() > 0.1)
+        if pictures:
+            write_png(codes[0], pictures / f"{application}_{operator}.png")

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """C, DCTL and BlinkScript that `tonewright shader` writes, compiled and run against `tonewright eval`.
 
 C by GCC and Clang, one with -ffast-math (the commit says which); DCTL by pocl, as OpenCL with Resolve's flags and without; whole
@@ -6,24 +6,17 @@ kernels for Nuke as C++, with the words of Blink defined, with a slider at its d
 curves. All operators, presets and looks with TONEWRIGHT_TEST_ALL=1, and a million hostile colors through ten of them; else
 a dozen.
 
-Usage: test_c_and_dctl.py TONEWRIGHT SHADERS [--record FILE]
-SHADERS is the folder that `tonewright shader --all SHADERS --display srgb` wrote.
---record merges the largest errors into a JSON file: language -> function -> error.
+    python3 -m pytest tests/shader/test_c_and_dctl.py --tonewright build/release/bin/tonewright
 """
+
 import ctypes
 import pathlib
 import shutil
 import subprocess
-import sys
-import tempfile
 
 import numpy as np
-
-from executed import Comparison, skip, start
 from opencl import RESOLVE, OpenCl, device
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import ALL, share_of  # noqa: E402
+from pictures import ALL, share_of, skip
 
 # Words of Blink, for a C++ compiler; the functions are those of Foundry's page "Maths Functions", Blink 16.1.
 BLINK = """
@@ -88,9 +81,8 @@ def run(library: ctypes.CDLL, function: str, rgb: np.ndarray) -> np.ndarray:
     return out
 
 
-def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
+def test_functions(comparison, command, shaders, scratch, errors_file):
     device()
-    comparison = Comparison(tonewright, shaders)
     compilers = [c for c in ("gcc", "clang") if shutil.which(c)]
     if not compilers:
         skip("no C compiler")
@@ -100,14 +92,12 @@ def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
     else:
         first = share_of(range(2), 2)[0]
         commands = [[c, *flags[(first + i) % 2]] for i, c in enumerate(compilers)]
-    with tempfile.TemporaryDirectory() as folder_name:
-        folder = pathlib.Path(folder_name)
-        runs = [("c", command, compiled(command, comparison.rows["c"], shaders, folder)) for command in commands]
-        runs.append(("blinkscript", ["g++", "-O2"], compiled_kernels(tonewright, comparison.rows["blinkscript"], folder)))
-        for language, command, library in runs:
-            for row in comparison.rows[language]:
-                comparison.add(language, " ".join(command), row, run(library, row["function"], comparison.colors_of(row)),
-                               is_as_written=language == "c" and "-ffast-math" not in command)
+    runs = [("c", words, compiled(words, comparison.rows["c"], shaders, scratch)) for words in commands]
+    runs.append(("blinkscript", ["g++", "-O2"], compiled_kernels(command, comparison.rows["blinkscript"], scratch)))
+    for language, words, library in runs:
+        for row in comparison.rows[language]:
+            comparison.add(language, " ".join(words), row, run(library, row["function"], comparison.colors_of(row)),
+                           is_as_written=language == "c" and "-ffast-math" not in words)
     rows = comparison.rows["dctl"]
     texts = {row["function"]: (shaders / row["path"]).read_text() for row in rows}
     calls = {function: f"{function}(vload3(0, a + i))" for function in texts}
@@ -116,8 +106,4 @@ def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
         for row in rows:
             comparison.add("dctl", " ".join(["pocl", *flags]), row, opencl.run(row["function"], comparison.colors_of(row)),
                            is_as_written=not flags)
-    return comparison.report(f"{', '.join(map(' '.join, commands))}; pocl", record_file)
-
-
-if __name__ == "__main__":
-    start(main)
+    comparison.finish(f"{', '.join(map(' '.join, commands))}; pocl", errors_file)

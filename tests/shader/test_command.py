@@ -1,21 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """`tonewright shader` as a user meets it: languages, applications, files, warnings, wrong usage.
 
-    python3 tests/shader/test_command.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`. Files for applications go through glslangValidator where it is installed.
+    python3 -m pytest tests/shader/test_command.py --tonewright build/release/bin/tonewright
 """
 
 import shutil
 import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
 
 OK, USAGE, FILE = 0, 2, 3  # exit codes
 
@@ -26,13 +19,13 @@ def call(command, *arguments):
     return done.returncode, done.stdout, done.stderr
 
 
-def check_standard_output(report, command):
+def test_standard_output(report, command):
     code, plain, _ = call(command, "hable", "--language", "glsl")
     report.check("-o - is the standard output", call(command, "hable", "--language", "glsl", "-o", "-")[:2] == (code, plain)
                  and "vec3 tw_hable(" in plain and not Path("-").exists())
 
 
-def check_refusals(report, command, scratch):
+def test_refusals(report, command, scratch):
     for arguments, code, words in [
         (["hable"], USAGE, "shader: --language and --for are missing; expected one of them"),
         (["hable", "-o", "x.h"], USAGE, "missing; expected --language dctl, blinkscript or c"),
@@ -68,7 +61,7 @@ def check_refusals(report, command, scratch):
         report.check(what, (got, out) == (code, "") and words in err and err.count("\n") == 1, f"{got} {out} {err}")
 
 
-def check_files(report, command, scratch):
+def test_files(report, command, scratch):
     path = scratch / "hable.h"
     code, out, err = call(command, "hable", "--language", "c", "-o", path)
     report.check("-o says what it wrote", (code, out) == (OK, "") and "tw_hable(), in float within" in err, err)
@@ -111,7 +104,7 @@ def check_files(report, command, scratch):
     report.check("the inverse brings light back", np.allclose(numbers, [0.3, 0.2, 0.1], atol=1e-6), numbers)
 
 
-def check_applications(report, command, scratch):
+def test_applications(report, command, scratch):
     code, listing, _ = call(command, "--list")
     applications = [line.split()[0] for line in listing.split("applications\n")[1].splitlines()]
     report.check("--list names them", code == OK and {"threejs", "bevy", "godot", "mpv", "resolve"} <= set(applications))
@@ -127,7 +120,7 @@ def check_applications(report, command, scratch):
     report.check("knobs of Nuke", 'defineParam(white, "white", 11.2f);' in texts["nuke"] and texts["nuke"].startswith("// Hable"))
     report.check("the first line of Godot", texts["godot"].startswith("#[compute]\n#version 450\n"))
     if not shutil.which("glslangValidator"):
-        print("files for Godot, mpv, Shadertoy and GStreamer were not validated: glslangValidator is not installed")
+        print("skipped: files for Godot, mpv, Shadertoy and GStreamer were not validated: glslangValidator is not installed")
         return
     no_parameters = "\n".join(line for line in texts["mpv"].split("//!HOOK")[1].splitlines()[1:] if not line.startswith("//!"))
     for name, stage, options, text in [
@@ -142,18 +135,3 @@ def check_applications(report, command, scratch):
         path.write_text(text)
         done = subprocess.run(["glslangValidator", *options, path], capture_output=True, text=True, check=False)
         report.check(f"glslangValidator takes the file for {name}", done.returncode == 0, done.stdout)
-
-
-def main(command):
-    report = Report()
-    with tempfile.TemporaryDirectory() as folder:
-        scratch = Path(folder)
-        check_standard_output(report, command)
-        check_refusals(report, command, scratch)
-        check_files(report, command, scratch)
-        check_applications(report, command, scratch)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))

@@ -1,20 +1,17 @@
-#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """GLSL ES and WGSL that `tonewright shader` writes, run in Chromium on WebGL 2 and WebGPU against `tonewright eval`.
 
 All operators, presets and looks with TONEWRIGHT_TEST_ALL=1, and a million hostile colors through ten of them; else a
 dozen. Chromium draws with SwiftShader.
 
-Usage: test_in_chromium.py TONEWRIGHT SHADERS [--record FILE]
-SHADERS is the folder that `tonewright shader --all SHADERS --display srgb` wrote.
---record merges the largest errors into a JSON file: language -> function -> error.
+    python3 -m pytest tests/shader/test_in_chromium.py --tonewright build/release/bin/tonewright
 """
+
 import json
 import pathlib
 
 import numpy as np
-
 from browser import run_page
-from executed import Comparison, start
 from test_wgsl_and_hlsl import textures_of
 
 # Language -> its key in the record, and a program around a function.
@@ -44,11 +41,10 @@ def rows_of(rgb: np.ndarray) -> bytes:
     return rgba.tobytes()
 
 
-def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
-    comparison = Comparison(tonewright, shaders)
+def test_functions(comparison, shaders, errors_file):
     for language, (key, program) in PROGRAMS.items():
         rows = comparison.rows[language]
-        files = {"/shaders/": shaders.resolve() / language}
+        files = {"/shaders/": shaders / language}
         functions = []
         for row in rows:
             name = row["function"]
@@ -65,8 +61,4 @@ def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
         for row in rows:
             got = np.frombuffer(posted[row["function"]], np.float32).reshape(-1, 4)[:len(comparison.colors_of(row)), :3]
             comparison.add(key, f"{about} from {language}", row, got, is_as_written=True)
-    return comparison.report("Chromium, SwiftShader", record_file)
-
-
-if __name__ == "__main__":
-    start(main)
+    comparison.finish("Chromium, SwiftShader", errors_file)

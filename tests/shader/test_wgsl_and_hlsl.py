@@ -1,22 +1,18 @@
-#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """WGSL and HLSL that `tonewright shader` writes, run on Dawn and SwiftShader against `tonewright eval`.
 
 HLSL goes through glslangValidator to SPIR-V and through naga to WGSL. All operators, presets and looks with
 TONEWRIGHT_TEST_ALL=1, and a million hostile colors through ten of them; else a dozen.
 
-Usage: test_wgsl_and_hlsl.py TONEWRIGHT SHADERS [--record FILE]
-SHADERS is the folder that `tonewright shader --all SHADERS --display srgb` wrote.
---record merges the largest errors into a JSON file: language -> function -> error.
+    python3 -m pytest tests/shader/test_wgsl_and_hlsl.py --tonewright build/release/bin/tonewright
 """
+
 import pathlib
 import re
 import subprocess
-import tempfile
 
 import numpy as np
-
 from dawn import Dawn, spirv_of
-from executed import Comparison, start
 
 MAIN = {
     "wgsl": """
@@ -76,22 +72,15 @@ def step_of(language: str, row: dict, shaders: pathlib.Path, rgb: np.ndarray, fo
     return {"source": str(source), "textures": textures_of(text_file), "input": str(colors), "out": f"{program}.out"}
 
 
-def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
-    dawn = Dawn(tonewright)
-    comparison = Comparison(tonewright, shaders)
-    with tempfile.TemporaryDirectory() as folder_name:
-        folder = pathlib.Path(folder_name)
-        for language in MAIN:
-            rows = comparison.rows[language]
-            textured = with_textures(tonewright, language, rows, shaders, folder)
-            steps = [step_of(language, row, at, comparison.colors_of(row), folder)
-                     for at, some in ((shaders, rows), (folder, textured)) for row in some]
-            adapter = dawn.run(steps)
-            for row, step in zip(rows + textured, steps):
-                shown = np.fromfile(step["out"], np.float32).reshape(-1, 3)
-                comparison.add(language, f"{adapter} from {language}", row, shown, is_as_written=True)
-    return comparison.report(adapter, record_file)
-
-
-if __name__ == "__main__":
-    start(main)
+def test_functions(comparison, command, shaders, scratch, errors_file):
+    dawn = Dawn(command)
+    for language in MAIN:
+        rows = comparison.rows[language]
+        textured = with_textures(command, language, rows, shaders, scratch)
+        steps = [step_of(language, row, at, comparison.colors_of(row), scratch)
+                 for at, some in ((shaders, rows), (scratch, textured)) for row in some]
+        adapter = dawn.run(steps)
+        for row, step in zip(rows + textured, steps):
+            shown = np.fromfile(step["out"], np.float32).reshape(-1, 3)
+            comparison.add(language, f"{adapter} from {language}", row, shown, is_as_written=True)
+    comparison.finish(adapter, errors_file)

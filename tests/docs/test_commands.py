@@ -38,7 +38,7 @@ NOT_RUN = {
     "dpkg-buildpackage": "builds everything; `./run release` runs it",
     "tests/install/release.sh": "needs the files of a release",
     "tests/install/debian.sh": "needs a Debian mirror",
-    "python3 tests/faults/test_faults.py": "takes minutes; the test faults runs it with fewer points",
+    "python3 -m pytest -c tests/pytest.ini tests/faults": "takes minutes; the test faults runs it with fewer points",
     "python3 tests/tags/peers.py": "needs every other program; it writes the table of its page",
     "ssh farm": "there is no farm; the test cli.output has its part after the pipe",
     "cmake --install": "the test install runs it",

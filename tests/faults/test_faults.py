@@ -1,35 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Memory and disks that fail at one call: the command ends with one line and exit code 3, and leaves no partial file.
 
-    python3 tests/faults/test_faults.py build/release/bin/tonewright build/release/tests/tonewright_faults.so [JOB... into]
-        [--points N] [--only FAULT]
+    python3 -m pytest tests/faults/test_faults.py --tonewright build/release/bin/tonewright [-k JOB] [--points N] [--only FAULT]
 
 For each job the shim counts the distinct call stacks of allocations and the calls on files, then one run for each of them makes
 it fail: for all calls on files, and for N call stacks (default 60). A run may end well where the program goes on without the
 memory, as a cache does: then its output is that of an unbroken run. Runs are also killed at their calls on files.
 
-The job `into` does the same to `config --into`, --update and --remove. After a failure, the folder has the old files. After a kill, the
-config is the old or the new one, and later runs update it and remove everything that was added. The last line is `N passed, M
-failed`.
+test_into does the same to `config --into`, --update and --remove. After a failure, the folder has the old files. After a kill, the
+config is the old or the new one, and later runs update it and remove everything that was added.
 """
 
-import argparse
 import errno
 import os
 import re
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
-from shots import CONFIG  # noqa: E402
+import pytest
+from shots import CONFIG
 
 OK, NO_FILE = 0, 3
 OLD = b"the old file"
@@ -44,7 +37,6 @@ JOBS = {
     "apply_png": (["apply", "in.exr", "out.png", "--operator", "hable", "--threads", "1"], "out.png"),
     "apply_exr": (["apply", "in.exr", "out.exr", "--operator", "hable", "--display", "linear", "--threads", "1"], "out.exr"),
 }
-POINTS = 60
 SECONDS = 120  # a run takes less than one second
 
 
@@ -200,58 +192,53 @@ class Into:
             left = [name for name in left if name.startswith(".") or not name.endswith(".clf") and name != "tonewright"]
             return f"{number}: left {left}" if left or config.read_text() != CONFIG else None
 
-    def check(self, report, pool, points):
-        old = self.scratch / "into.0"
-        old.mkdir()
-        (old / "studio.ocio").write_text(CONFIG)
-        for step, arguments in enumerate(self.STEPS):
-            new = self.scratch / f"into.{step + 1}"
-            shutil.copytree(old, new)
-            log = self.scratch / f"into.{step}.log"
-            done = self.run(new, *arguments, TONEWRIGHT_FAULT_LOG=str(log))
-            calls = [line.split() for line in log.read_text().splitlines() if line.startswith("file")]
-            numbers = [int(number) for _, number, name in calls if name not in ("fwrite", "fflush")]  # of messages
-            moments = spread(numbers, points)
-            for what, check in (("killed", self.after_kill), ("failures", self.after_failure)):
-                wrong = [text for text in pool.map(lambda number: check(number, step, old, new), moments) if text]
-                report.check(f"config --into {' '.join(arguments)}: {what} at {len(moments)} of {len(numbers)} calls on files",
-                             done.returncode == OK and moments and not wrong, "\n     ".join([done.stderr, *wrong[:10]]))
-            old = new
+
+@pytest.fixture(scope="module")
+def pool():
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        yield pool
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    parser.add_argument("shim", type=Path)
-    parser.add_argument("jobs", nargs="*", default=[*JOBS, "into"], metavar="JOB")
-    parser.add_argument("--points", type=int, metavar="N", default=POINTS, help="call stacks of allocations (default %(default)s)")
-    parser.add_argument("--only", metavar="FAULT", help="run this one and show it, such as memory:120")
-    arguments = parser.parse_args()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name, ThreadPoolExecutor(os.cpu_count()) as pool:
-        scratch = Path(name)
-        picture = scratch / "in.exr"
-        command = arguments.command.resolve()
-        subprocess.run([command, "chart", "-o", picture, "--width", "320", "--height", "180"], check=True)
-        for job_name in arguments.jobs:
-            if job_name == "into":
-                Into(command, arguments.shim.resolve(), scratch).check(report, pool, arguments.points)
-                continue
-            job = Job(command, arguments.shim.resolve(), job_name, picture, scratch)
-            if arguments.only:
-                code, lines, output, left = job.run(arguments.only)
-                print(f"{job_name} {arguments.only}: exit {code}, {len(output or b'')} bytes, left {left}", *lines, sep="\n")
-                continue
-            faults, whole, total = faults_of(job, arguments.points)
-            for kind, runs in faults.items():
-                if not runs:
-                    continue
-                wrong = [text for text in pool.map(lambda fault: job.what_is_wrong(fault, whole), runs) if text]
-                report.check(f"{job_name}: {kind}: {len(runs)} runs", not wrong,
-                             f"{len(wrong)} are wrong:\n     " + "\n     ".join(wrong[:10]))
-            print(f"     ({job_name} allocates {total} times)")
-    return report.finish()
+@pytest.fixture(scope="module")
+def picture(command, tmp_path_factory):
+    path = tmp_path_factory.mktemp("picture") / "in.exr"
+    subprocess.run([command, "chart", "-o", path, "--width", "320", "--height", "180"], check=True)
+    return path
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+@pytest.mark.parametrize("name", JOBS)
+def test_job(request, report, command, shim, scratch, pool, picture, name):
+    job = Job(command, shim, name, picture, scratch)
+    if only := request.config.getoption("--only"):
+        code, lines, output, left = job.run(only)
+        report.check(f"{name} {only}: exit {code}, {len(output or b'')} bytes, left {left}", True)
+        print(*lines, sep="\n")
+        return
+    faults, whole, total = faults_of(job, request.config.getoption("--points"))
+    for kind, runs in faults.items():
+        if not runs:
+            continue
+        wrong = [text for text in pool.map(lambda fault: job.what_is_wrong(fault, whole), runs) if text]
+        report.check(f"{name}: {kind}: {len(runs)} runs", not wrong,
+                     f"{len(wrong)} are wrong:\n     " + "\n     ".join(wrong[:10]))
+    print(f"     ({name} allocates {total} times)")
+
+
+def test_into(request, report, command, shim, scratch, pool):
+    points, into = request.config.getoption("--points"), Into(command, shim, scratch)
+    old = scratch / "into.0"
+    old.mkdir()
+    (old / "studio.ocio").write_text(CONFIG)
+    for step, arguments in enumerate(into.STEPS):
+        new = scratch / f"into.{step + 1}"
+        shutil.copytree(old, new)
+        log = scratch / f"into.{step}.log"
+        done = into.run(new, *arguments, TONEWRIGHT_FAULT_LOG=str(log))
+        calls = [line.split() for line in log.read_text().splitlines() if line.startswith("file")]
+        numbers = [int(number) for _, number, name in calls if name not in ("fwrite", "fflush")]  # of messages
+        moments = spread(numbers, points)
+        for what, check in (("killed", into.after_kill), ("failures", into.after_failure)):
+            wrong = [text for text in pool.map(lambda number: check(number, step, old, new), moments) if text]
+            report.check(f"config --into {' '.join(arguments)}: {what} at {len(moments)} of {len(numbers)} calls on files",
+                         done.returncode == OK and moments and not wrong, "\n     ".join([done.stderr, *wrong[:10]]))
+        old = new

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "lut/formats/cube_text.h"
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -31,20 +31,6 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// format that it will read: a config's LUT, which is not validated otherwise.
 /// @throws FileError  with path, line and reason.
 TONEWRIGHT_API void check_lut_words(const std::string& path, std::string_view bytes);
-
-/// A .cube: a 1D LUT, a 3D LUT or both, and the range of each.
-struct CubeText {
-    struct Table {
-        int size = 0;  // 0: there is none
-        std::array<double, 3> lo = {0, 0, 0};
-        std::array<double, 3> hi = {1, 1, 1};
-        std::vector<float> rows;  // RGB triplets; of a 3D LUT red fastest
-    };
-    Table table;
-    Table cube;
-    /// One line about a keyword that is unknown and ignored; empty if there is none.
-    std::string note;
-};
 
 /// True for .cube, .dat, .mga, .m3d and .look, which parse_cube() reads.
 [[nodiscard]] TONEWRIGHT_API bool is_parsed_here(const std::string& extension);

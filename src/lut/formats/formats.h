@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "lut/lut_text.h"
+#include "lut/formats/cube_text.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 

@@ -21,6 +21,7 @@
 #include "cli/suggestions.h"
 #include "report/backends.h"
 #include "report/page.h"
+#include "shader_runs/shader_run.h"
 #include "tasks/json.h"
 #include "tonewright/definition.h"
 #include "tonewright/engine.h"

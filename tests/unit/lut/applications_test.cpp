@@ -23,6 +23,12 @@ LutRequest request_of(const LutApplication& application, const std::string& op) 
     return request;
 }
 
+TEST(LutApplications, HaveAnInterpolation) {
+    EXPECT_EQ(interpolation_of(nullptr), LutInterpolation::automatic);
+    EXPECT_EQ(interpolation_of(&find_lut_application("unreal")), LutInterpolation::trilinear);
+    EXPECT_EQ(interpolation_of(&find_lut_application("resolve")), LutInterpolation::tetrahedral);
+}
+
 TEST(LutApplications, ReadTheSizeThatTheyGet) {
     for (const LutApplication& application : all_lut_applications()) {
         EXPECT_LE(application.size, application.largest_size) << application.id;

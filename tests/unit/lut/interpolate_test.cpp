@@ -89,8 +89,9 @@ TEST(Interpolate, TrilinearAndTetrahedralAgreeAtNodes) {
             ASSERT_EQ(tetrahedral[c], static_cast<double>(lut.values[3 * node + c]));
         }
         const Vector3 between = {v[0] * 0.9, v[1] * 0.9, v[2] * 0.9};
-        apart = std::max(
-            apart, std::fabs(interpolate(lut, between)[0] - interpolate(lut, between, true)[0]));
+        apart =
+            std::max(apart, std::fabs(interpolate(lut, between)[0] -
+                                      interpolate(lut, between, LutInterpolation::trilinear)[0]));
     }
     EXPECT_GT(apart, 0.1) << "between nodes they are two things";
 }

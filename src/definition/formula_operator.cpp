@@ -145,7 +145,7 @@ std::shared_ptr<const Operator> formula_operator(std::string_view given) {
                ", as code values would; expected linear light, which --display encodes";
     };
     try {
-        (void)build_stages(*recipe, recipe->stages, {});
+        (void)build_stages(*recipe, recipe->stages, {});  // its results must be finite
     } catch (const StageError& e) {
         fail(text, e.text());
     }

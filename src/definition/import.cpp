@@ -427,7 +427,7 @@ ImportedShader imported(std::string_view text, const std::string& name,
         for (const Stage& stage : resolved.build())
             result.stages.emplace_back(stage_kind(stage));
         result.definition = "# From " + op.source + ".\n" + assumed + definition_of(resolved);
-        (void)parse_operator(result.definition, "the definition");
+        (void)parse_operator(result.definition, "the definition");  // it must be readable
     } catch (const Error& e) {
         if (!wrong->empty()) throw NotFinite(function.at, *wrong);
         throw FormulaError(function.at, e.text());

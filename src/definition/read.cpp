@@ -82,14 +82,16 @@ class Table {
         const Value* value = find(key);
         return value ? number_of(*value, key) : otherwise;
     }
-    /// The index of the text in choices.
+    /// The index of the text in choices; without the key, the first one.
     [[nodiscard]] std::size_t choice(const std::string& key, const Names& choices) const {
-        const Value* value = find(key);
-        if (!value) return 0;
-        const auto found = std::find(choices.begin(), choices.end(), text_of(*value, key));
+        return find(key) ? required_choice(key, choices) : 0;
+    }
+    [[nodiscard]] std::size_t required_choice(const std::string& key, const Names& choices) const {
+        const Value& value = require(key);
+        const auto found = std::find(choices.begin(), choices.end(), text_of(value, key));
         if (found == choices.end()) {
-            fail(value->at, in_table(key + " is " + described(*value)) + "; expected " +
-                                join_choices(choices) + did_you_mean(value->text, choices));
+            fail(value.at, in_table(key + " is " + described(value)) + "; expected " +
+                               join_choices(choices) + did_you_mean(value.text, choices));
         }
         return static_cast<std::size_t>(found - choices.begin());
     }
@@ -303,8 +305,7 @@ class Reader {
             if (const Value* value = table.find(key))
                 fail(value->at, std::string(key) + " is given with choices; expected one of them");
         }
-        (void)table.require("default");
-        spec.default_choice = spec.choices[table.choice("default", spec.choices)];
+        spec.default_choice = spec.choices[table.required_choice("default", spec.choices)];
         if (!table.find("from_display")) return;
         if (table.choice("from_display", {"range", "gamut"}) == 0) {
             spec.from_display = [](const DisplayFacts& d) -> std::string {
@@ -359,7 +360,7 @@ class Reader {
             spec.from_picture = [member](const SceneStatistics& s) { return s.*member; };
         }
         if (table.find("from_display")) {
-            (void)table.choice("from_display", {"peak"});
+            (void)table.choice("from_display", {"peak"});  // the only one
             const double lo = spec.min;
             const double hi = spec.max;
             spec.from_display = [lo, hi](const DisplayFacts& d) {
@@ -587,7 +588,7 @@ class Reader {
             scope.inputs = {"x"};
         }
         if (const Value* temporaries = table.find("temporaries")) {
-            (void)Table::text_of(*temporaries, "temporaries");
+            (void)Table::text_of(*temporaries, "temporaries");  // parsed() expects text
             parsed(*temporaries, [&](std::string_view text) { parse_temporaries(text, scope); });
         }
         (this->*reader.read)(stage, table, scope);
@@ -710,10 +711,9 @@ class Reader {
                 fail(all->at, "deviation is " + described(*all) + "; expected [[deviation]]");
             for (const Value& item : all->items) {
                 const Table table(item, "[[deviation]]", {"kind", "value", "when"});
-                (void)table.require("kind");
                 DocumentedDifference d{};
                 d.kind = static_cast<DocumentedDifference::Kind>(
-                    table.choice("kind", difference_names()));
+                    table.required_choice("kind", difference_names()));
                 d.value = Table::number_of(table.require("value"), "value", true);
                 d.when = table.text("when");
                 op_.differences.push_back(d);

@@ -209,6 +209,7 @@ GradientEngine::GradientEngine(const Pipeline& pipeline) : tape_(pipeline) {
         last_use[x] = code.size();
     std::vector<std::size_t> free;
     for (std::size_t i = 0; i < code.size(); ++i) {
+        // The functions of users run here, and not in a pass over colors.
         if (code[i].grid) (void)code[i].grid->nodes();
         Step step{.instruction = code[i]};
         const std::vector<std::uint32_t> read = operands(code[i]);

@@ -223,12 +223,9 @@ const Function& Parser::overload(const Token& at, const std::vector<Value>& in) 
             if (!type) continue;
             if (*type == in[i].type) {
                 score += in.size();
-                continue;
-            }
-            try {
-                (void)glsl_convert(in[i], *type);
+            } else if (glsl_converts(in[i].type, *type)) {
                 score += type->size == in[i].type.size ? 1 : 0;
-            } catch (const GlslMisuse&) {
+            } else {
                 score = 0;
             }
         }

@@ -467,14 +467,18 @@ GlslValue glsl_construct(const GlslType& type, const std::vector<GlslValue>& par
     return result;
 }
 
+bool glsl_converts(const GlslType& from, const GlslType& to) {
+    const bool is_base =
+        from.base == to.base || (from.base == Base::integer && to.base == Base::number);
+    const bool is_size =
+        from.size == to.size && from.is_matrix == to.is_matrix && from.is_hlsl == to.is_hlsl;
+    const bool is_spread = from.is_scalar() && to.is_vector();
+    return is_base && (is_size || is_spread);
+}
+
 GlslValue glsl_convert(const GlslValue& value, const GlslType& type) {
     if (value.type == type) return value;
-    const bool is_base = value.type.base == type.base ||
-                         (value.type.base == Base::integer && type.base == Base::number);
-    const bool is_size = value.type.size == type.size && value.type.is_matrix == type.is_matrix &&
-                         value.type.is_hlsl == type.is_hlsl;
-    const bool is_spread = value.type.is_scalar() && type.is_vector();
-    if (!is_base || (!is_size && !is_spread))
+    if (!glsl_converts(value.type, type))
         misuse("value is " + glsl_name(value.type) + "; expected " + glsl_name(type));
     return each(type, value.depth, [&](std::size_t i) { return component(value, i); });
 }

@@ -54,7 +54,9 @@ class GlslMisuse : public Error {
                                     const GlslValue& no);
 /// `vec3(...)`: the parts one after the other, or one number for all components.
 [[nodiscard]] GlslValue glsl_construct(const GlslType& type, const std::vector<GlslValue>& parts);
-/// A value as another type: numbers become vectors, integers numbers.
+/// True if glsl_convert() does it: numbers become vectors, integers numbers.
+[[nodiscard]] bool glsl_converts(const GlslType& from, const GlslType& to);
+/// A value as another type.
 [[nodiscard]] GlslValue glsl_convert(const GlslValue& value, const GlslType& type);
 
 /// True for a function of GLSL or HLSL that is read.

@@ -76,7 +76,7 @@ PicturePass pass_over(const ImageBuf& src, const MeterOptions& options) {
 }  // namespace
 
 void check_meter_options(const MeterOptions& o) {
-    (void)source_color({}, o.input);
+    (void)source_color({}, o.input);  // a wrong name
     check_number("reference_white", o.reference_white, 50, 1000);
     check_number("delta", o.delta, 1e-10, 1);
     check_number("histogram_min", o.histogram_min, -64, 128);

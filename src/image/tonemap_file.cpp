@@ -274,7 +274,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
                          nthreads);  // reports a wrong name before it reads a large file
     PictureReader reader(in, nthreads, read);
     check_pixel_type("source", reader.spec().format);
-    (void)channel_layout(reader.spec());
+    (void)channel_layout(reader.spec());  // reports wrong channels before it reads them
     report_header(reader.spec(), tonemapper.options().input, read);
     if (read.header) read.header(reader.spec());
     if (read.warn) {

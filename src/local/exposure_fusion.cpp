@@ -471,8 +471,8 @@ Operator define_exposure_fusion() {
         "each pyramid level halves the picture: at twice the size, the same result needs mip one "
         "higher"};
     op.build = [](const Params& p) -> Pipeline {
-        (void)whole_number(p, "mip");
-        (void)whole_number(p, "display_mip");
+        check_whole_number(p, "mip");
+        check_whole_number(p, "display_mip");
         return {};
     };
     op.run_local = run;

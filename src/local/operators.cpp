@@ -25,12 +25,16 @@ void run_local_operator(const ResolvedOperator& op, ScenePlanes& picture) {
     op.op->run_local(picture, op.params);
 }
 
-int whole_number(const Params& params, const char* name) {
+void check_whole_number(const Params& params, const char* name) {
     const double value = params.number(name);
     if (value != std::floor(value)) {
         throw Error(std::string(name) + " is " + shortest(value) + "; expected a whole number");
     }
-    return static_cast<int>(value);
+}
+
+int whole_number(const Params& params, const char* name) {
+    check_whole_number(params, name);
+    return static_cast<int>(params.number(name));
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -14,8 +14,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 inline constexpr const char* kLocalNegatives =
     "clamped at 0 in Rec.709, before the operator, which limits colors outside Rec.709 to it";
 
-/// Value of a parameter that must be a whole number.
-/// @throws Error
+/// @throws Error  the value of the parameter is no whole number
+void check_whole_number(const Params& params, const char* name);
+/// The value. @throws Error  as check_whole_number()
 [[nodiscard]] int whole_number(const Params& params, const char* name);
 
 TONEWRIGHT_NAMESPACE_END

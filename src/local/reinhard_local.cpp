@@ -271,7 +271,7 @@ Operator define_reinhard_local() {
                    "surroundings are measured in pixels: at twice the size, they cover less of the "
                    "picture"};
     op.build = [](const Params& p) -> Pipeline {
-        (void)whole_number(p, "scales");
+        check_whole_number(p, "scales");
         return {};
     };
     op.run_local = run;

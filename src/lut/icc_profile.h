@@ -46,9 +46,8 @@ class IccTags {
 /// allocates them before it knows.
 /// @param name  of the tag, for messages
 /// @returns     nodes a side, one number for each channel in
-[[nodiscard]] std::vector<std::size_t> check_icc_table(std::string_view name, std::string_view tag,
-                                                       std::size_t channels_in,
-                                                       const RefuseIcc& refuse);
+std::vector<std::size_t> check_icc_table(std::string_view name, std::string_view tag,
+                                         std::size_t channels_in, const RefuseIcc& refuse);
 /// The same for the tables of a `mpet` tag, ICC.1:2022, 10.16.
 void check_icc_elements(std::string_view name, std::string_view tag, const RefuseIcc& refuse);
 

@@ -389,7 +389,7 @@ SourceColor color_of_tables(std::string_view profile, const IccTags& tags, bool 
         if (name[0] == 'D') {
             check_icc_elements(name, tag, refuse);
         } else {
-            (void)check_icc_table(name, tag, is_gray ? 1 : 3, refuse);
+            check_icc_table(name, tag, is_gray ? 1 : 3, refuse);
         }
     }
     const auto tables = std::make_shared<const Tables>(profile, is_gray, refuse);

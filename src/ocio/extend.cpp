@@ -398,7 +398,7 @@ ExtendedConfig reduce(const ConfigLocation& location) {
     }
     result.check = [before, path](const std::string& written) {
         return reading(path, [&] {
-            (void)check_result(path, written, before);
+            check_result(path, written, before);
             return std::vector<ExtendedView>{};
         });
     };

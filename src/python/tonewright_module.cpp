@@ -295,7 +295,7 @@ py::array tonemap_array(const py::array& given, const TonemapOptions& options,
 py::object tonemap_any(const py::object& image, const std::string& op, const py::object& roi,
                        int nthreads, const py::object& progress, const std::string& resize,
                        const py::kwargs& arguments) {
-    if (!resize.empty()) (void)parse_resize(resize);
+    if (!resize.empty()) (void)parse_resize(resize);  // a wrong text
     if (!resize.empty() && !roi.is_none())
         throw Error("tonemap: roi is given with resize; expected one of them");
     const TonemapOptions options = parse_options(op, arguments);
@@ -514,7 +514,7 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
                        double max_pixels, const std::string& compression, int quality,
                        const std::string& subsampling, bool verifies, const std::string& resize,
                        const py::kwargs& arguments) {
-    if (!resize.empty()) (void)parse_resize(resize);
+    if (!resize.empty()) (void)parse_resize(resize);  // a wrong text
     check_overwriting({{in, out}}, is_in_place);
     TonemapOptions options = parse_options(op, arguments);
     WriteOptions write;

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
-#include "base/atomic_file.h"
 #include "base/format_number.h"
-#include "base/input_file.h"
-#include "base/little_endian.h"
 #include "base/strings.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
-#include "pipeline/stand_ins.h"
-#include "tonewright/generated_files.h"
+#include "tasks/shader_files.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
 
@@ -44,17 +39,6 @@ int list_languages() {
                    application.display, application.steps);
     }
     return kOk;
-}
-
-/// Raw little-endian floats beside the text: FOLDER/NAME.rgba32f.
-std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string& text_file) {
-    std::vector<GeneratedFile> files;
-    for (const ShaderTexture& texture : shader.textures) {
-        const std::filesystem::path path =
-            std::filesystem::path(text_file).parent_path() / (texture.name + ".rgba32f");
-        files.push_back({path.string(), little_endian_bytes(texture.rgba)});
-    }
-    return files;
 }
 
 ShaderCurves curves_of(const Options& options) {
@@ -125,37 +109,14 @@ void write_one(Options& options) {
     request.tables = tables_of(options);
     request.curves = curves_of(options);
     request.cache_folder = user_cache_folder();
-    if (!options.file.empty()) {
-        if (const std::string why = why_no_file(options.file); !why.empty())
-            throw FileError(fmt::format("write: {}: {}", options.file, why));
-    }
-    const Shader shader = write_shader(request);
-    if (const std::string text = stand_in_warning(request.view.op, "shader", options.uniforms);
-        !text.empty())
-        warn(text);
-    constexpr double kTenBits = 1.0 / 1023;
-    const bool is_double = request.language == ShaderLanguage::javascript && !request.application;
-    if (!is_double && shader.errors.in_float > kTenBits) {
-        warn(
-            fmt::format("{} is up to {} off in float, more than a code value of 10 bits: its "
-                        "formulas need more digits than a shader has",
-                        shader.function, rounded_up(shader.errors.in_float)));
-    }
-    if (!shader.textures.empty() && options.file.empty()) {
-        throw Error(
-            fmt::format("shader: {} has a texture; expected -o FILE, beside which it is "
-                        "written",
-                        shader.function));
-    }
+    const auto& [shader, is_double, textures] =
+        write_shader_files(request, options.file, {.warn = warn});
     if (options.file.empty()) {
         fmt::print("{}", shader.text);
         return;
     }
-    for (const auto& [path, contents] : texture_files(shader, options.file)) {
-        write_text_atomically(path, contents);
+    for (const std::string& path : textures)
         print_result(path + ": its texture");
-    }
-    write_text_atomically(options.file, shader.text);
     print_result(
         is_double
             ? fmt::format("{}: {}(), the reference in 64-bit float", options.file, shader.function)
@@ -173,48 +134,23 @@ void write_all(const Options& options) {
             "shader: --all is given; expected no OPERATOR, --for, -o, --uniforms or --inverse "
             "beside it");
     }
-    std::vector<ShaderLanguageInfo> languages = shader_languages();
-    if (!options.language.empty()) languages = {find_shader_language(options.language)};
-    require_writable_folder(options.all);
-    std::vector<GeneratedFile> files;
-    std::map<std::string, std::size_t> left_out;
-    std::string manifest = "path,operator,function,float_error,guaranteed,vulkan_estimate\n";
-    std::size_t count = 0;
-    for (const OperatorVariant& variant : all_variants()) {
-        ShaderRequest request;
-        request.tables = tables_of(options);
-        request.curves = curves_of(options);
-        request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
-                                 options.exposure, options.display);
-        const ShaderErrors errors = measure_shader(request);  // all languages share them
-        const bool is_grid = reads_grid(request.view);
-        for (const ShaderLanguageInfo& language : languages) {
-            if (is_grid && !language.holds_grids) {
-                ++left_out[language.id];
-                continue;
-            }
-            request.language = language.language;
-            const Shader shader = write_shader(request, &errors);
-            const std::string path = language.id + "/" + shader.function + language.extension;
-            manifest +=
-                fmt::format("{},{},{},{},{},{}\n", path, operator_text(request.view.op),
-                            shader.function, rounded_up(errors.in_float),
-                            rounded_up(errors.guaranteed), rounded_up(errors.vulkan_estimate));
-            files.push_back({path, shader.text});
-            ++count;
-            for (GeneratedFile& file : texture_files(shader, path))
-                files.push_back(std::move(file));
-        }
-    }
-    for (const auto& [language, grids] : left_out) {
+    ShaderSetRequest request;
+    request.folder = options.all;
+    request.languages = shader_languages();
+    if (!options.language.empty()) request.languages = {find_shader_language(options.language)};
+    request.tables = tables_of(options);
+    request.curves = curves_of(options);
+    request.input = options.input;
+    request.exposure_stops = options.exposure;
+    request.display = options.display;
+    const ShaderSetResult result = write_shader_set(request);
+    for (const auto& [language, grids] : result.left_out) {
         print_result(
             fmt::format("{}: {} without a shader, because they read grids, which it "
                         "cannot hold",
                         language, grids));
     }
-    print_result(fmt::format("{}: {} shaders", options.all, count));
-    files.push_back({"MANIFEST.csv", manifest});
-    write_generated_files(options.all, files, "MANIFEST.csv");
+    print_result(fmt::format("{}: {} shaders", options.all, result.count));
 }
 
 int run_shader(Options& options) {

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tasks/shader_files.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/format_number.h"
+#include "base/input_file.h"
+#include "base/little_endian.h"
+#include "pipeline/stand_ins.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/registry.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+/// Raw little-endian floats beside the text: FOLDER/NAME.rgba32f.
+std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string& text_file) {
+    std::vector<GeneratedFile> files;
+    for (const ShaderTexture& texture : shader.textures) {
+        const std::filesystem::path path =
+            std::filesystem::path(text_file).parent_path() / (texture.name + ".rgba32f");
+        files.push_back({path.string(), little_endian_bytes(texture.rgba)});
+    }
+    return files;
+}
+
+}  // namespace
+
+ShaderResult write_shader_files(const ShaderRequest& request, const std::string& file,
+                                const Listener& listener) {
+    if (!file.empty()) {
+        if (const std::string why = why_no_file(file); !why.empty())
+            throw FileError(fmt::format("write: {}: {}", file, why));
+    }
+    ShaderResult result{write_shader(request)};
+    const Shader& shader = result.shader;
+    listener.warn_of(stand_in_warning(request.view.op, "shader", request.uniforms));
+    constexpr double kTenBits = 1.0 / 1023;
+    result.is_double = request.language == ShaderLanguage::javascript && !request.application;
+    if (!result.is_double && shader.errors.in_float > kTenBits) {
+        listener.warn_of(
+            fmt::format("{} is up to {} off in float, more than a code value of 10 bits: its "
+                        "formulas need more digits than a shader has",
+                        shader.function, rounded_up(shader.errors.in_float)));
+    }
+    if (!shader.textures.empty() && file.empty()) {
+        throw Error(
+            fmt::format("shader: {} has a texture; expected -o FILE, beside which it is "
+                        "written",
+                        shader.function));
+    }
+    if (file.empty()) return result;
+    for (const auto& [path, contents] : texture_files(shader, file)) {
+        write_text_atomically(path, contents);
+        result.textures.push_back(path);
+    }
+    write_text_atomically(file, shader.text);
+    return result;
+}
+
+ShaderSetResult write_shader_set(const ShaderSetRequest& set) {
+    require_writable_folder(set.folder);
+    ShaderSetResult result;
+    std::vector<GeneratedFile> files;
+    std::string manifest = "path,operator,function,float_error,guaranteed,vulkan_estimate\n";
+    for (const OperatorVariant& variant : all_variants()) {
+        ShaderRequest request;
+        request.tables = set.tables;
+        request.curves = set.curves;
+        request.view = make_view(resolve_operator(variant.name, {}, variant.look), set.input,
+                                 set.exposure_stops, set.display);
+        const ShaderErrors errors = measure_shader(request);  // all languages share them
+        const bool is_grid = reads_grid(request.view);
+        for (const ShaderLanguageInfo& language : set.languages) {
+            if (is_grid && !language.holds_grids) {
+                ++result.left_out[language.id];
+                continue;
+            }
+            request.language = language.language;
+            const Shader shader = write_shader(request, &errors);
+            const std::string path = language.id + "/" + shader.function + language.extension;
+            manifest +=
+                fmt::format("{},{},{},{},{},{}\n", path, operator_text(request.view.op),
+                            shader.function, rounded_up(errors.in_float),
+                            rounded_up(errors.guaranteed), rounded_up(errors.vulkan_estimate));
+            files.push_back({path, shader.text});
+            ++result.count;
+            for (GeneratedFile& file : texture_files(shader, path))
+                files.push_back(std::move(file));
+        }
+    }
+    files.push_back({"MANIFEST.csv", manifest});
+    write_generated_files(set.folder, files, "MANIFEST.csv");
+    return result;
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tasks/shader_files.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tonewright/registry.h"
+#include "unit/errors.h"
+#include "unit/folder.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+ShaderRequest request_for(const char* op) {
+    ShaderRequest request;
+    request.view = make_view(resolve_operator(op), "lin_rec709", 0, kLinearOutput);
+    return request;
+}
+
+TEST(ShaderFiles, WritesTheTextOfWriteShader) {
+    const Folder folder;
+    const ShaderRequest request = request_for("hable");
+    const ShaderResult result = write_shader_files(request, folder / "hable.glsl", {});
+    EXPECT_EQ(result.shader.text, write_shader(request).text);
+    EXPECT_EQ(read(folder / "hable.glsl"), result.shader.text);
+    EXPECT_FALSE(result.is_double);
+    EXPECT_TRUE(result.textures.empty());
+    EXPECT_EQ(write_shader_files(request, "", {}).shader.text, result.shader.text) << "no file";
+}
+
+TEST(ShaderFiles, TexturesLieBesideTheText) {
+    const Folder folder;
+    ShaderRequest request = request_for("aces_20");
+    request.tables = ShaderTables::texture;
+    const ShaderResult result = write_shader_files(request, folder / "aces.glsl", {});
+    ASSERT_EQ(result.textures.size(), result.shader.textures.size());
+    ASSERT_FALSE(result.textures.empty());
+    EXPECT_EQ(read(result.textures[0]).size(), 4 * result.shader.textures[0].rgba.size());
+    EXPECT_EQ(folder.files().size(), result.textures.size() + 1);
+    EXPECT_NE(error_of([&] { (void)write_shader_files(request, "", {}); }).find("has a texture"),
+              std::string::npos);
+}
+
+TEST(ShaderFiles, JavascriptIsTheReference) {
+    ShaderRequest request = request_for("hable");
+    request.language = ShaderLanguage::javascript;
+    EXPECT_TRUE(write_shader_files(request, "", {}).is_double);
+}
+
+TEST(ShaderFiles, WarnsBeforeItWrites) {
+    const Folder folder;
+    const Listener refuses = {.warn = [](const std::string& line) { throw Error(line); }};
+    EXPECT_NE(error_of([&] {
+                  (void)write_shader_files(request_for("drago"), folder / "drago.glsl", refuses);
+              }).find("measures each picture"),
+              std::string::npos);
+    EXPECT_TRUE(folder.files().empty());
+    EXPECT_EQ(error_of([&] { (void)write_shader_files(request_for("hable"), folder.path(), {}); }),
+              "write: " + folder.path() + ": is a folder");
+}
+
+}  // namespace
+TONEWRIGHT_NAMESPACE_END

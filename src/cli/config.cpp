@@ -2,23 +2,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
-#include "base/atomic_file.h"
-#include "base/input_file.h"
-#include "base/system_files.h"
-#include "cli/archive.h"
 #include "cli/command.h"
 #include "cli/elapsed_line.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/suggestions.h"
+#include "tasks/config.h"
 #include "tonewright/error.h"
-#include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -37,131 +29,38 @@ struct Options {
     bool has_backup = false;
 };
 
-/// "studio.ocio.bak", or with the first number that is free.
-void write_backup(const std::string& path) {
-    namespace fs = std::filesystem;
-    std::string backup = path + ".bak";
-    for (int number = 2; fs::exists(backup); ++number)
-        backup = fmt::format("{}.bak{}", path, number);
-    remove_leftovers({backup});
-    const std::string text = read_file(path, std::string::npos, [&](const Problem& why) {
-        throw FileError(within("read: " + path, why));
-    });
-    AtomicFile copy(backup, path);
-    int error = copy.write(text);
-    if (error == 0) error = copy.keep();
-    if (error != 0) throw FileError(within("write: " + backup, problem_of_system(error)));
-    fmt::print("backup: {}\n", backup);
-}
-
 /// "1 view", "2 views".
 std::string counted(std::size_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// True if the file has these contents already.
-bool is_written(const std::filesystem::path& path, const std::string& contents) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error) ||
-        std::filesystem::file_size(path, error) != contents.size())
-        return false;
-    std::ifstream file(path, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(file), {}) == contents;
-}
-
-/// Links to the folder of the tables, relative, so that both folders can be moved together.
-void link_folders(const std::filesystem::path& tables, const ExtendedConfig& changed,
-                  std::vector<std::filesystem::path>& written) {
-    namespace fs = std::filesystem;
-    for (const std::string& link : changed.missing_links) {
-        std::error_code error;
-        const fs::path target = fs::relative(tables, fs::path(link).parent_path(), error);
-        if (!error) fs::create_directory_symlink(target, link, error);
-        if (error) {
-            throw FileError(fmt::format("write: {}: {}; expected a link to {}", link,
-                                        error.message(), tables.string()));
-        }
-        written.emplace_back(link);
-        fmt::print("linked {} to {}\n", link, target.string());
-    }
-}
-
-/// Replaces the config after all checks; until then the old one stays. A run that is killed between
-/// config and record leaves the new record as NAME.new, which the next run finds.
-void replace_config(const ExtendedConfig& changed, const Options& options) {
-    namespace fs = std::filesystem;
-    const std::string& path = changed.path;
-    const fs::path folder = fs::absolute(path).parent_path();
-    std::vector<fs::path> written;
-    const fs::path record = folder / changed.record.path;
-    const fs::path new_record = record.string() + ".new";
-    // Files that an earlier release wrote beside a link are where the link to the folder belongs.
-    const bool is_moved = std::any_of(changed.unused_files.begin(), changed.unused_files.end(),
-                                      [](const fs::path& file) { return file.is_absolute(); });
-    std::vector<ExtendedView> views;
-    try {
-        require_writable_folder(record.parent_path().string());
-        for (const GeneratedFile& file : changed.files) {
-            const fs::path table = folder / file.path;
-            // Its name has the hash of its contents, unless it was damaged since.
-            if (is_written(table, file.contents)) continue;
-            std::error_code ignored;
-            if (!fs::exists(table, ignored)) written.push_back(table);
-            write_text_atomically(table.string(), file.contents);
-        }
-        {
-            // Beside the config, so that its relative paths work; never kept.
-            const std::string name = (folder / ".tonewright.ocio").string();
-            remove_leftovers({name});
-            AtomicFile trial(name, path);  // as private as the config
-            if (const int error = trial.write(changed.text))
-                throw FileError(within("write: " + path, problem_of_system(error)));
-            views = changed.check(trial.path().string());
-        }
-        if (!is_moved) link_folders(record.parent_path(), changed, written);
-        if (options.has_backup) write_backup(path);
-        written.push_back(new_record);
-        write_text_atomically(new_record.string(), changed.record.contents);
-        write_text_atomically(path, changed.text);
-        written.clear();
-        std::error_code error, ignored;
-        if (!options.is_removed) {
-            fs::rename(new_record, record, error);
-        } else if (fs::remove(record, error); !error) {
-            fs::remove(new_record, error);
-        }
-        if (error) throw FileError("write: " + record.string() + ": " + error.message());
-        for (const std::string& file : changed.unused_files) {
-            fs::remove(folder / file, ignored);
-            if (is_moved) fs::remove((folder / file).parent_path(), ignored);  // if it is empty
-        }
-        fs::remove(record.parent_path(), ignored);  // if it is empty
-        if (is_moved) link_folders(record.parent_path(), changed, written);
-        for (const std::string& link : changed.folder_links) {
-            if (!fs::exists(record.parent_path(), ignored)) fs::remove(link, ignored);
-        }
-    } catch (...) {
-        std::error_code ignored;
-        for (const fs::path& file : written)
-            fs::remove(file, ignored);
-        fs::remove(record.parent_path(), ignored);
-        throw;
-    }
-    if (path != options.into) fmt::print("edited {}, to which {} links\n", path, options.into);
+void change_existing(const Options& options) {
+    ConfigChange change;
+    using Kind = ConfigChange::Kind;
+    if (options.is_updated) change.kind = Kind::update;
+    if (options.is_removed) change.kind = Kind::remove;
+    change.options = options.config;
+    change.has_backup = options.has_backup;
+    const ChangedConfig changed = with_elapsed_line("config", [&](const Listener& listener) {
+        change.warn = listener.warn;
+        return change_config(options.into, change);
+    });
+    for (const ChangedConfig::Link& link : changed.links)
+        fmt::print("linked {} to {}\n", link.path, link.target);
+    if (!changed.backup.empty()) fmt::print("backup: {}\n", changed.backup);
+    if (changed.path != options.into)
+        fmt::print("edited {}, to which {} links\n", changed.path, options.into);
     for (const auto& [kind, names] : changed.added) {
         if (!names.empty())
             fmt::print("added {}: {}\n", counted(names.size(), kind), fmt::join(names, ", "));
     }
-    const auto tables = std::count_if(
-        changed.unused_files.begin(), changed.unused_files.end(),
-        [](const fs::path& file) { return file.string().find(".yaml") == std::string::npos; });
-    if (tables > 0) {
-        fmt::print("removed {} from {}/\n", counted(static_cast<std::size_t>(tables), "table"),
-                   record.parent_path().filename().string());
+    if (changed.removed_tables > 0) {
+        fmt::print("removed {} from {}/\n", counted(changed.removed_tables, "table"),
+                   changed.folder);
     }
-    if (views.empty()) return;
+    if (changed.views.empty()) return;
     fmt::print("\n{:<28} {:<40} {:>9} {:>9}\n", "display", "view", "max error", "99.9 %");
-    for (const ExtendedView& v : views)
+    for (const ExtendedView& v : changed.views)
         fmt::print("{:<28} {:<40} {:>9.1e} {:>9.1e}\n", v.display, v.view, v.max, v.p999);
 }
 
@@ -182,60 +81,21 @@ int run_config(Options& options) {
         if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
     });
     if (!options.into.empty()) {
-        const ExtendedConfig changed = [&] {
-            const ElapsedLine line("config");
-            return options.is_removed ? reduce_config(options.into)
-                                      : extend_config(options.into, wanted, options.is_updated);
-        }();
-        std::error_code ignored;
-        const auto names = std::filesystem::hard_link_count(changed.path, ignored);
-        if (!ignored && names > 1) {
-            warn(fmt::format("{} has {} hard links: only this name gets the new contents",
-                             changed.path, names));
-        }
-        for (const std::string& text : changed.warnings)
-            warn(text);
-        if (!changed.unchecked.empty()) warn(changed.unchecked);
-        replace_config(changed, options);
+        change_existing(options);
         return kOk;
     }
     if (options.folder.empty() && options.archive.empty())
         throw Error("config: -o is missing; expected -o FOLDER, --archive FILE or --into CONFIG");
     wanted.working = find_input_space(wanted.working).id;
-    const ConfigPlan plan(wanted);
-    for (const std::string& text : plan.warnings())
-        warn(text);
-    const std::filesystem::path archive(options.archive);
-    if (!options.archive.empty() && archive.extension() != ".ocioz") {
-        throw Error("config: --archive is " + options.archive +
-                    "; expected a name that ends in .ocioz");
-    }
-    if (!options.folder.empty()) require_writable_folder(options.folder);
-    if (!options.archive.empty())
-        require_writable_folder(std::filesystem::absolute(archive).parent_path().string());
     const ResultLine result;
-    const std::vector<GeneratedFile> files = [&] {
-        const ElapsedLine line("config");
-        return make_config(plan);
-    }();
-    const auto tell = [&](const std::string& path, const std::vector<GeneratedFile>& written) {
-        double bytes = 0;
-        for (const GeneratedFile& file : written)
-            bytes += static_cast<double>(file.contents.size());
-        result.print(
-            fmt::format("config: {}: {} files, {:.1f} MB", path, written.size(), bytes / 1e6));
-    };
-    if (!options.folder.empty()) {
-        write_generated_files(options.folder, files, "config.ocio");
-        tell(options.folder, files);
+    const std::vector<WrittenConfig> written =
+        with_elapsed_line("config", [&](const Listener& listener) {
+            return write_config({wanted, options.folder, options.archive}, listener);
+        });
+    for (const WrittenConfig& w : written) {
+        result.print(fmt::format("config: {}: {} files, {:.1f} MB", w.path, w.files,
+                                 static_cast<double>(w.bytes) / 1e6));
     }
-    if (options.archive.empty()) return kOk;
-    std::vector<GeneratedFile> packed;
-    for (const GeneratedFile& file : files) {
-        if (file.path == "config.ocio" || file.path.starts_with("luts/")) packed.push_back(file);
-    }
-    write_text_atomically(options.archive, make_archive(packed));
-    tell(options.archive, packed);
     return kOk;
 }
 

@@ -11,7 +11,6 @@
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
-#include "cli/archive.h"
 #include "cli/elapsed_line.h"
 #include "cli/json_forms.h"
 #include "cli/messages.h"
@@ -22,6 +21,7 @@
 #include "report/backends.h"
 #include "report/page.h"
 #include "shader_runs/shader_run.h"
+#include "tasks/archive.h"
 #include "tasks/json.h"
 #include "tonewright/definition.h"
 #include "tonewright/engine.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ocio/extend.h"
+
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,7 +24,6 @@
 #include "ocio/transforms.h"
 #include "ocio/yaml_text.h"
 #include "tonewright/engine.h"
-#include "tonewright/ocio.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -31,8 +31,8 @@
 #include "image/tonemap_file.h"
 #include "shader_runs/shader_run.h"
 #include "tasks/bake.h"
+#include "tasks/config.h"
 #include "tonewright/engine.h"
-#include "tonewright/generated_files.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -362,6 +362,7 @@ py::dict describe(const Operator& op);
 py::dict describe(const Display& display);
 py::dict describe(const LutApplication& application);
 py::dict describe(const ParityRow& row);
+py::dict describe(const ExtendedView& view);
 
 /// A dict for each value.
 template <class Values>
@@ -442,6 +443,15 @@ py::dict describe(const ParityRow& row) {
     d["bound"] = row.bound;
     d["ok"] = row.is_ok;
     d["note"] = row.note;
+    return d;
+}
+
+py::dict describe(const ExtendedView& view) {
+    py::dict d;
+    d["display"] = view.display;
+    d["view"] = view.view;
+    d["max"] = view.max;
+    d["p999"] = view.p999;
     return d;
 }
 
@@ -645,29 +655,65 @@ py::dict meter_any(const py::object& image, const std::string& method, std::opti
     return describe(metering, rule, delta);
 }
 
-void write_config(const std::string& folder, const std::vector<std::string>& profiles,
-                  const std::vector<std::string>& views, const std::vector<std::string>& displays,
-                  const std::vector<std::string>& looks, const std::string& working,
-                  const std::vector<std::pair<std::string, std::string>>& custom,
-                  const std::vector<double>& exposure_stops, const std::string& cache) {
+using CustomViews = std::vector<std::pair<std::string, std::string>>;
+
+ConfigOptions config_options(const std::vector<std::string>& views,
+                             const std::vector<std::string>& displays,
+                             const std::vector<std::string>& looks, const CustomViews& custom,
+                             const std::vector<double>& exposure_stops, const std::string& cache) {
     ConfigOptions options;
     options.cache_folder = cache;
     options.others = operator_files();
-    options.profiles = profiles;
     options.views = views;
     options.displays = displays;
     options.looks = looks;
-    options.working = find_input_space(working).id;
     options.exposure_stops = exposure_stops;
     for (const auto& [name, op] : custom)
         options.custom.push_back({name, resolve_operator(op, {}, {}, options.others)});
-    const ConfigPlan plan(options);
-    for (const std::string& text : plan.warnings())
-        warn(text);
+    return options;
+}
+
+void make_config_files(const std::string& folder, const std::string& archive,
+                       const std::vector<std::string>& profiles, const std::string& working,
+                       const std::vector<std::string>& views,
+                       const std::vector<std::string>& displays,
+                       const std::vector<std::string>& looks, const CustomViews& custom,
+                       const std::vector<double>& exposure_stops, const std::string& cache) {
+    ConfigRequest request;
+    request.options = config_options(views, displays, looks, custom, exposure_stops, cache);
+    request.options.profiles = profiles;
+    request.options.working = find_input_space(working).id;
+    request.folder = folder;
+    request.archive = archive;
     const py::gil_scoped_release release;
-    require_writable_folder(folder);
-    with_memory_for(folder,
-                    [&] { write_generated_files(folder, make_config(plan), "config.ocio"); });
+    write_config(request, {.warn = warn});
+}
+
+py::dict change_config_file(const std::string& path, const std::string& kind, bool has_backup,
+                            const std::vector<std::string>& views,
+                            const std::vector<std::string>& displays,
+                            const std::vector<std::string>& looks, const CustomViews& custom,
+                            const std::vector<double>& exposure_stops, const std::string& cache) {
+    ConfigChange change;
+    change.kind =
+        static_cast<ConfigChange::Kind>(find_choice("change", kind, {"add", "update", "remove"}));
+    change.options = config_options(views, displays, looks, custom, exposure_stops, cache);
+    change.has_backup = has_backup;
+    change.warn = warn;
+    const ChangedConfig changed = [&] {
+        const py::gil_scoped_release release;
+        return with_memory_for(path, [&] { return change_config(path, change); });
+    }();
+    py::dict d;
+    d["path"] = changed.path;
+    d["backup"] = changed.backup;
+    py::dict added;
+    for (const auto& [name, items] : changed.added)
+        added[py::str(name)] = items;
+    d["added"] = added;
+    d["removed_tables"] = changed.removed_tables;
+    d["views"] = describe_all(changed.views);
+    return d;
 }
 
 py::list verify_operators(const std::vector<std::string>& operators,
@@ -731,6 +777,7 @@ PYBIND11_MODULE(_tonewright, m) {
           py::arg("format"), py::arg("input_encoding"), py::arg("dimension"), py::arg("size"),
           py::arg("max_error"), py::arg("nodes"), py::arg("decimals"), py::arg("depth"),
           py::arg("icc_version"), py::arg("cache"));
-    m.def("make_config", &tw::write_config);
+    m.def("make_config", &tw::make_config_files);
+    m.def("change_config", &tw::change_config_file);
     m.def("verify", &tw::verify_operators);
 }

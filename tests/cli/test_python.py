@@ -10,6 +10,7 @@ import argparse
 import ast
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -238,7 +239,40 @@ def check_types(report, tw):
     functions = [getattr(tw, name) for name in tw.__all__ if callable(getattr(tw, name))]
     bare = [f.__name__ for f in functions if not f.__doc__ or set(inspect.signature(f).parameters) - set(f.__annotations__)
             or "return" not in f.__annotations__]
-    report.check(f"{len(functions)} functions with types and a docstring", len(functions) == 11 and not bare, bare)
+    report.check(f"{len(functions)} functions with types and a docstring", len(functions) == 12 and not bare, bare)
+
+
+def check_change(report, tw, command, scratch):
+    """change_config() does what `config --into` does to a config of another studio."""
+    text = (scratch / "ours" / "config.ocio").read_text().replace("name: tonewright", "name: studio")
+    ours, theirs = scratch / "change" / "ours", scratch / "change" / "theirs"
+    for folder in (ours, theirs):
+        shutil.copytree(scratch / "ours", folder)
+        (folder / "config.ocio").write_text(text)
+
+    def same():
+        files = [{p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()} for folder in (ours, theirs)]
+        return files[0] == files[1]
+
+    config = ours / "config.ocio"
+    changed = tw.change_config(config, views=["AgX"], custom={"Seven": "hable:white=7"}, backup=True)
+    run(command, "config", "--into", theirs / "config.ocio", "--views", "AgX", "--operator", "hable:white=7", "--name", "Seven",
+        "--backup")
+    report.check("change_config(): the files of `config --into`", same() and config.read_text() != text, changed)
+    report.check("change_config(): its result", changed["path"] == str(config) and changed["backup"] == f"{config}.bak"
+                 and changed["added"]["view"] == ["AgX on sRGB", "Seven on sRGB"]
+                 and [view["view"] for view in changed["views"]] == ["AgX", "Seven"]
+                 and all(view["p999"] <= view["max"] < 0.01 for view in changed["views"]), changed)
+    changed = tw.change_config(config, "update", views=["drago"])
+    run(command, "config", "--into", theirs / "config.ocio", "--update", "--views", "drago")
+    report.check("change_config(): the files of --update", same() and changed["removed_tables"] > 0, changed)
+    raises(report, "change_config of a name that is taken", ValueError, "already; expected another name (custom=",
+           lambda: tw.change_config(config, views=["drago"]))
+    tw.change_config(config, "remove")
+    report.check("change_config(): the old text after its removal", config.read_text() == text)
+    raises(report, "change_config without views to remove", OSError, "", lambda: tw.change_config(config, "remove"))
+    raises(report, "change_config of a kind", ValueError, "change is ad; expected add", lambda: tw.change_config(config, "ad"))
+    raises(report, "change_config of no file", FileNotFoundError, "none.ocio", lambda: tw.change_config(scratch / "none.ocio"))
 
 
 def check_config(report, tw, command, scratch):
@@ -255,6 +289,14 @@ def check_config(report, tw, command, scratch):
     cache = scratch / "cache"
     tw.bake("agx_blender:formula", scratch / "linear.clf", input_encoding="linear", cache=cache)
     report.check("bake keeps its fit in the cache", len(list(cache.glob("cube_*.numbers"))) == 1)
+    tw.make_config(None, archive=scratch / "ours.ocioz", views=["hable"], displays=["srgb"])
+    run(command, "config", "--archive", scratch / "theirs.ocioz", "--views", "hable", "--displays", "srgb")
+    report.check("make_config(): the archive of `config`",
+                 (scratch / "ours.ocioz").read_bytes() == (scratch / "theirs.ocioz").read_bytes())
+    raises(report, "make_config of a ZIP", ValueError, f"archive is {scratch}/x.zip; expected a name that ends in .ocioz",
+           lambda: tw.make_config(None, archive=scratch / "x.zip", views=["hable"]))
+    raises(report, "make_config into nothing", ValueError, "expected a folder or an archive", lambda: tw.make_config(None))
+    check_change(report, tw, command, scratch)
     raises(report, "make_config of no view", ValueError, "hablex", lambda: tw.make_config(scratch / "x", views=["hablex"]))
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -86,59 +87,63 @@ struct ExtendedView {
     double p999 = 0;
 };
 
-/// An existing config after views were added or removed.
-struct ExtendedConfig {
-    /// The file to replace: the given name, or the file that this symbolic link leads to.
+/// A change of an existing config.
+struct ConfigChange {
+    enum class Kind : unsigned char {
+        add,
+        update,  ///< removes the earlier additions first; without options, repeats them
+        remove,  ///< removes everything that was added
+    };
+    Kind kind = Kind::add;
+    /// Views (empty, if there are custom ones: none), displays (of the config), looks, custom views
+    /// and exposures. Others do not count.
+    ConfigOptions options = {};
+    /// Keeps the old config as PATH.bak, or under the first such name with a number that is free.
+    bool has_backup = false;
+    /// Receives warnings, one line each, before anything is written. @see render. What it throws
+    /// ends the change. Null: none.
+    std::function<void(const std::string& line)> warn = {};
+};
+
+/// An existing config that was changed.
+struct ChangedConfig {
+    /// The file that was replaced: the given name, or the file that this symbolic link leads to.
     std::string path;
-    /// Tables, by their paths relative to the config; their names have a hash of their contents.
-    std::vector<GeneratedFile> files;
-    /// A file for later updates and removals, relative to the config. Write it as PATH.new before
-    /// you replace the config, and rename it afterward. After reduce_config(), remove both instead.
-    GeneratedFile record;
-    /// Tables that are no longer used, by their paths relative to the config. Absolute paths are
-    /// those of files that an earlier release wrote beside a symbolic link.
-    std::vector<std::string> unused_files;
-    /// OpenColorIO looks for tables beside the name that it opens. Make symbolic links with these
-    /// names to the folder of the tables, after the unused files are gone.
-    std::vector<std::string> missing_links;
-    /// Symbolic links to the folder of the tables. Remove them if that folder is gone.
-    std::vector<std::string> folder_links;
-    /// The config: the old text, byte for byte, with insertions or without them.
-    std::string text;
+    /// Empty: none.
+    std::string backup = {};
+    /// OpenColorIO looks for tables beside the name that it opens: new symbolic links to their
+    /// folder.
+    struct Link {
+        std::string path;
+        std::string target;
+    };
+    std::vector<Link> links = {};
     /// Names of the added items, by kind: "view transform", "look", "view", "color space".
     struct Added {
         std::string kind;
         std::vector<std::string> names;
     };
-    std::vector<Added> added;
-    /// One line about the items that `check` cannot run, because the profile of the config is newer
-    /// than those that the linked OpenColorIO reads; empty: it can run all.
-    std::string unchecked;
-    /// @see ConfigPlan::warnings
-    std::vector<std::string> warnings;
-    /// Reads the written config with its tables. Checks that OpenColorIO accepts it, that all old
-    /// spaces and views give the same numbers, and that the new views match the operators.
-    /// @throws Error  a check fails
-    std::function<std::vector<ExtendedView>(const std::string& path)> check;
+    std::vector<Added> added = {};
+    /// The folder of the tables beside the config, and the count of those that no view uses and
+    /// that are gone.
+    std::string folder;
+    std::size_t removed_tables = 0;
+    /// Errors of the added views. Empty if the linked OpenColorIO cannot read the config's profile.
+    std::vector<ExtendedView> views = {};
 };
 
 /// Adds views, looks and output spaces to a user's config, on its displays whose numbers match one
-/// of Tonewright's. The rest of the file stays as it is, with comments and order.
-/// @param options     views (empty, if there are custom ones: none), displays (of the config),
-///                    looks, custom, exposure_stops
-/// @param is_updated  removes the earlier additions first; if all options are empty, repeats the
-///                    earlier ones
-/// @throws FileError  the config cannot be read, OpenColorIO refuses it, or it lacks an interchange
-///                    role, a space or such a display
-/// @throws Error      an option is wrong, or a name is taken
-[[nodiscard]] TONEWRIGHT_API ExtendedConfig extend_config(const std::string& path,
-                                                          const ConfigOptions& options,
-                                                          bool is_updated = false);
-
-/// Removes everything that extend_config() added.
-/// @throws FileError  the config cannot be read, nothing was added to it, or an added text was
-///                    edited
-[[nodiscard]] TONEWRIGHT_API ExtendedConfig reduce_config(const std::string& path);
+/// of Tonewright's, or removes them. The rest of the file stays as it is, with comments and order.
+/// Tables go to a folder beside it.
+///
+/// The config is replaced after all checks: OpenColorIO accepts the new one, all old spaces and
+/// views give the same numbers, and the new views match the operators. Until then the old one
+/// stays, also if the process is killed.
+/// @throws FileError  the config cannot be read or written, OpenColorIO refuses it, or it lacks an
+///                    interchange role, a space or such a display; `update` and `remove`: nothing
+///                    was added to it, or an added text was edited
+/// @throws Error      an option is wrong, a name is taken, or a check fails
+TONEWRIGHT_API ChangedConfig change_config(const std::string& path, const ConfigChange& change);
 
 /// Passes OpenColorIO's messages to a function instead of standard error, each once and without its
 /// prefix. This changes the whole process. Programs may call it; libraries should not.

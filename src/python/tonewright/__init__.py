@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     Path = Union[str, bytes, _os.PathLike]
     Picture = Union[npt.NDArray[Any], "OpenImageIO.ImageBuf"]
 
-__all__ = ["__version__", "applications", "bake", "displays", "evaluate", "info", "make_config", "meter", "operators", "tonemap",
+__all__ = ["__version__", "applications", "bake", "change_config", "displays", "evaluate", "info", "make_config", "meter", "operators", "tonemap",
            "tonemap_file", "verify"]
 
 
@@ -275,26 +275,58 @@ def bake(op: str, file: Path, *, host: str = "", format: str | None = None, inpu
                             icc_version=_optional_index(icc_version), cache=_cache(cache), **options)
 
 
-def make_config(folder: Path, *, views: Iterable[str] = (), displays: Iterable[str] = (), looks: Iterable[str] = (),
+def _config_views(views: Iterable[str], displays: Iterable[str], looks: Iterable[str], custom: Mapping[str, str] | None,
+                  exposure_views: Iterable[float]) -> tuple[Any, ...]:
+    return (_texts("views", views), _texts("displays", displays), _texts("looks", looks),
+            [(_text("custom", name), _text("custom", op)) for name, op in (custom or {}).items()],
+            [_number("exposure_views", stops) for stops in exposure_views])
+
+
+def make_config(folder: Path | None, *, views: Iterable[str] = (), displays: Iterable[str] = (), looks: Iterable[str] = (),
                 working: str = "lin_rec709", profiles: Iterable[str] = ("2.1", "2.0", "2.5"),
                 custom: Mapping[str, str] | None = None, exposure_views: Iterable[float] = (),
-                cache: Path | None = None) -> None:
+                archive: Path | None = None, cache: Path | None = None) -> None:
     """Write an OpenColorIO config of the operators into a folder. It takes up to two minutes.
 
+    folder: None: an archive only.
     views: names of views or operators, in order; empty: a dozen; ["all"]: all.
     displays, looks: empty: all.
     working: color space in which applications compute.
     profiles: versions of OpenColorIO; the first becomes config.ocio.
     custom: names of views -> operators with their settings, such as {"Studio": "reinhard_extended:white=6"}.
     exposure_views: stops; every view is added again with each of them.
+    archive: an .ocioz file that gets the config and its LUTs, for OpenColorIO 2.2 or newer.
     cache: folder that keeps fitted 3D LUTs for the next call, at most 256 MiB (default: none).
 
     Example: tonewright.make_config("ocio_config", views=["AgX", "hable"], profiles=["2.1"])
     """
-    _tonewright.make_config(_path("folder", folder), _texts("profiles", profiles), _texts("views", views),
-                            _texts("displays", displays), _texts("looks", looks), _text("working", working),
-                            [(_text("custom", name), _text("custom", op)) for name, op in (custom or {}).items()],
-                            [_number("exposure_views", stops) for stops in exposure_views], _cache(cache))
+    if folder is None and archive is None:
+        raise ValueError("folder is None; expected a folder or an archive")
+    _tonewright.make_config("" if folder is None else _path("folder", folder),
+                            "" if archive is None else _path("archive", archive), _texts("profiles", profiles),
+                            _text("working", working), *_config_views(views, displays, looks, custom, exposure_views), _cache(cache))
+
+
+def change_config(config: Path, change: str = "add", *, views: Iterable[str] = (), displays: Iterable[str] = (),
+                  looks: Iterable[str] = (), custom: Mapping[str, str] | None = None, exposure_views: Iterable[float] = (),
+                  backup: bool = False, cache: Path | None = None) -> dict[str, Any]:
+    """Add views to an existing OpenColorIO config, or remove them, as `tonewright config --into` does.
+
+    config: replaced after all checks; the rest of its text stays. Tables of the views go to tonewright/ beside it.
+    change: "add"; "update" (rebuild the added views, or replace them with these views); "remove" (remove the added views).
+    views: as make_config(); empty: a dozen, or none if there are custom ones.
+    displays: of the config, empty: all that Tonewright knows.
+    looks, custom, exposure_views, cache: as make_config().
+    backup: keep the config as it was as CONFIG.bak.
+
+    The result has path (of the replaced file, to which config may link), backup (its path or ""), added (kinds, such as "view",
+    -> names), removed_tables (their count) and views: a dict with display, view, and the errors max and p999 (99.9 %), in code
+    values, for each added view.
+
+    Example: tonewright.change_config("studio.ocio", views=["AgX", "hable"], backup=True)
+    """
+    return _tonewright.change_config(_path("config", config), _text("change", change), bool(backup),
+                                     *_config_views(views, displays, looks, custom, exposure_views), _cache(cache))
 
 
 def verify(operators: Iterable[str] = (), *, displays: Iterable[str] = (), input: str = "lin_rec709",

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ocio/extend.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,41 +9,11 @@
 
 #include "tonewright/error.h"
 #include "tonewright/generated_files.h"
-#include "tonewright/ocio.h"
 #include "unit/folder.h"
+#include "unit/ocio/own_config.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-// A config with comments and an order of its own, which must stay.
-const std::string kOwn = R"(ocio_profile_version: 2.1
-# Of a studio.
-search_path: luts
-roles: {scene_linear: lin, default: lin, aces_interchange: aces, cie_xyz_d65_interchange: xyz, data: raw}
-file_rules:
-  - !<Rule> {name: Default, colorspace: lin}
-displays:
-  sRGB:
-    - !<View> {name: Raw, colorspace: raw}   # the first
-    - !<View> {name: Plain, view_transform: plain, display_colorspace: sRGB}
-view_transforms:
-  - !<ViewTransform>
-    name: plain
-    from_scene_reference: !<RangeTransform> {min_in_value: 0, min_out_value: 0, max_in_value: 1, max_out_value: 1}
-display_colorspaces:
-  - !<ColorSpace> {name: xyz, encoding: display-linear}
-  - !<ColorSpace> {name: sRGB, encoding: sdr-video, from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_sRGB}}
-colorspaces:
-  - !<ColorSpace> {name: lin, encoding: scene-linear, to_scene_reference: !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}}
-  - !<ColorSpace> {name: aces, encoding: scene-linear}
-  - !<ColorSpace> {name: raw, isdata: true, encoding: data}
-)";
-
-ConfigOptions hable() {
-    ConfigOptions options;
-    options.views = {"hable"};
-    return options;
-}
 
 /// Writes it as the command does: tables, the record, the config.
 void apply(const ExtendedConfig& extended, const Folder& folder) {
@@ -59,7 +31,7 @@ TEST(ExtendConfig, AddsAViewAndKeepsEveryByteOfTheRest) {
     const Folder folder;
     const std::string path = folder / "studio.ocio";
     write(path, kOwn);
-    const ExtendedConfig extended = extend_config(path, hable());
+    const ExtendedConfig extended = extend_config(path, hable_view());
     EXPECT_EQ(read(path), kOwn) << "nothing is written yet";
     EXPECT_EQ(extended.path, path);
     const auto views = std::find_if(extended.added.begin(), extended.added.end(),
@@ -83,7 +55,7 @@ TEST(ExtendConfig, AddsAViewAndKeepsEveryByteOfTheRest) {
     EXPECT_EQ(checked[0].display, "sRGB");
     // One curve for each channel needs no 3D LUT; float's own error in sRGB codes is 1e-5.
     EXPECT_LT(checked[0].max, 1e-4);
-    EXPECT_THROW((void)extend_config(path, hable()), Error) << "the names are taken";
+    EXPECT_THROW((void)extend_config(path, hable_view()), Error) << "the names are taken";
 
     const ExtendedConfig reduced = reduce_config(path);
     EXPECT_EQ(reduced.text, kOwn) << "the way back";
@@ -100,7 +72,7 @@ TEST(ExtendConfig, AnUpdateReplacesWhatWasAdded) {
     const Folder folder;
     const std::string path = folder / "studio.ocio";
     write(path, kOwn);
-    apply(extend_config(path, hable()), folder);
+    apply(extend_config(path, hable_view()), folder);
     const std::string first = read(path);
     // Without options the earlier ones are repeated.
     EXPECT_EQ(extend_config(path, {}, true).text, first);
@@ -117,15 +89,15 @@ TEST(ReduceConfig, RefusesWhatWasEditedOrNeverAdded) {
     write(path, kOwn);
     EXPECT_THROW((void)reduce_config(path), FileError) << "nothing was added";
     EXPECT_THROW((void)reduce_config(folder / "none.ocio"), FileError);
-    EXPECT_THROW((void)extend_config(folder / "none.ocio", hable()), FileError);
-    apply(extend_config(path, hable()), folder);
+    EXPECT_THROW((void)extend_config(folder / "none.ocio", hable_view()), FileError);
+    apply(extend_config(path, hable_view()), folder);
     std::string edited = read(path);
     const std::size_t at = edited.find("Hable");
     ASSERT_NE(at, std::string::npos);
     write(path, edited.replace(at, 5, "Table"));
     EXPECT_THROW((void)reduce_config(path), FileError);
     write(path, "no config");
-    EXPECT_THROW((void)extend_config(path, hable()), FileError);
+    EXPECT_THROW((void)extend_config(path, hable_view()), FileError);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ BakeResult baked(const BakeRequest& request, std::vector<std::string>* warnings 
                 }});
 }
 
-TEST(Bake, ApplicationDecidesWhatHasNoValue) {
+TEST(BakeTask, ApplicationDecidesWhatHasNoValue) {
     const LutApplication& resolve = find_lut_application("resolve");
     const LutRequest lut = lut_request_of(request_for("agx_sobotka", "resolve"), resolve.format);
     EXPECT_EQ(lut.encoding.id, resolve.encoding);
@@ -48,7 +48,7 @@ TEST(Bake, ApplicationDecidesWhatHasNoValue) {
     EXPECT_EQ(own.size, 17);
 }
 
-TEST(Bake, CurveIsATableWhereTheApplicationConvertsPrimaries) {
+TEST(BakeTask, CurveIsATableWhereTheApplicationConvertsPrimaries) {
     const LutApplication& resolve = find_lut_application("resolve");
     BakeRequest request = request_for("reinhard", "resolve");
     EXPECT_EQ(lut_request_of(request, resolve.format).dimension, LutDimension::automatic);
@@ -57,7 +57,7 @@ TEST(Bake, CurveIsATableWhereTheApplicationConvertsPrimaries) {
     EXPECT_EQ(lut_request_of(request, resolve.format).size, resolve.size);
 }
 
-TEST(Bake, ChainOfAnApplicationIsSceneLinear) {
+TEST(BakeTask, ChainOfAnApplicationIsSceneLinear) {
     const LutRequest lut = lut_request_of(request_for("gt7", "nuke"), LutFormat::ctf);
     EXPECT_TRUE(lut.encoding.is_linear);
     EXPECT_EQ(lut.view.input, lut.encoding.default_input);
@@ -65,7 +65,7 @@ TEST(Bake, ChainOfAnApplicationIsSceneLinear) {
     EXPECT_EQ(lut.dimension, LutDimension::automatic);
 }
 
-TEST(Bake, WithoutAnApplicationTheInputIsAcescct) {
+TEST(BakeTask, WithoutAnApplicationTheInputIsAcescct) {
     BakeRequest request = request_for("agx_sobotka");
     request.exposure_stops = 1;
     const LutRequest lut = lut_request_of(request, LutFormat::cube);
@@ -77,7 +77,7 @@ TEST(Bake, WithoutAnApplicationTheInputIsAcescct) {
     EXPECT_EQ(lut_request_of(request, LutFormat::cube).view.input, "lin_rec709");
 }
 
-TEST(Bake, RefusesContradictions) {
+TEST(BakeTask, RefusesContradictions) {
     BakeRequest request = request_for("agx_sobotka");
     request.icc_version = 4;
     EXPECT_EQ(error_of([&] { (void)lut_request_of(request, LutFormat::cube); }),
@@ -95,7 +95,7 @@ TEST(Bake, RefusesContradictions) {
               "bake: size is 129; expected at most 65 for resolve");
 }
 
-TEST(Bake, WritesTheFileAndTellsTheErrors) {
+TEST(BakeTask, WritesTheFileAndTellsTheErrors) {
     const Folder folder;
     BakeRequest request = request_for("clamp");
     request.file = folder / "a.cube";
@@ -112,7 +112,7 @@ TEST(Bake, WritesTheFileAndTellsTheErrors) {
     EXPECT_TRUE(result.steps.empty()) << "no application";
 }
 
-TEST(Bake, WarnsBeforeItWrites) {
+TEST(BakeTask, WarnsBeforeItWrites) {
     const Folder folder;
     BakeRequest request = request_for("drago");
     request.file = folder / "a.cube";
@@ -128,7 +128,7 @@ TEST(Bake, WarnsBeforeItWrites) {
     EXPECT_TRUE(folder.files().empty());
 }
 
-TEST(Bake, PictureIsForTheCallerToWrite) {
+TEST(BakeTask, PictureIsForTheCallerToWrite) {
     const Folder folder;
     BakeRequest request = request_for("agx_sobotka");
     request.file = folder / "a.tif";
@@ -149,7 +149,7 @@ TEST(Bake, PictureIsForTheCallerToWrite) {
               "bake: file is " + request.file + "; expected .png or .tif for 16 bits");
 }
 
-TEST(Bake, StepsAreForTheFile) {
+TEST(BakeTask, StepsAreForTheFile) {
     const Folder folder;
     BakeRequest request = request_for("reinhard", "ffmpeg");
     request.file = folder / "a.cube";
@@ -162,14 +162,14 @@ TEST(Bake, StepsAreForTheFile) {
     EXPECT_NE(baked(request).steps[0].find("FILE"), std::string::npos);
 }
 
-TEST(Bake, RefusesAFolderFirst) {
+TEST(BakeTask, RefusesAFolderFirst) {
     const Folder folder;
     BakeRequest request = request_for("agx_sobotka");
     request.file = folder.path();
     EXPECT_EQ(error_of([&] { (void)baked(request); }), "write: " + folder.path() + ": is a folder");
 }
 
-TEST(Bake, NamesOfNodes) {
+TEST(BakeTask, NamesOfNodes) {
     EXPECT_EQ(parse_lut_nodes("auto"), LutNodes::automatic);
     EXPECT_EQ(parse_lut_nodes("sampled"), LutNodes::sampled);
     EXPECT_EQ(parse_lut_nodes("fitted"), LutNodes::fitted);

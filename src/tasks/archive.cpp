@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/archive.h"
+#include "tasks/archive.h"
 #include "tonewright/error.h"
 #include "tonewright/generated_files.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "base/format_number.h"
 #include "cli/elapsed_line.h"
-#include "cli/exact_forms.h"
 #include "cli/messages.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
@@ -13,6 +13,7 @@
 #include "lut/display_code.h"
 #include "lut/shipped_set.h"
 #include "tasks/bake.h"
+#include "tasks/exact_files.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
@@ -103,13 +104,59 @@ void bake_one(const Options& options) {
         print_result(line);
 }
 
+std::string grade_of(double error) {
+    const double codes = 255 * error;
+    constexpr double kExact = 0.01;  // half a code of 14 bits
+    constexpr double kNear = 0.5;    // rounds to the same 8-bit code
+    if (codes < kExact) return "exact";
+    if (codes <= kNear) return "near";
+    return fmt::format("{:.1f}", codes);
+}
+
+/// The command line that writes the file, with the user's own options.
+std::string command_of(const ExactFile& file, const ResolvedOperator& op,
+                       const LutApplication& host, const Options& options) {
+    std::string name = file.is_formula ? op.op->id + ":formula" : options.op;
+    std::string text = fmt::format("tonewright {} {}", file.is_shader ? "shader" : "bake", name);
+    for (const std::string& setting : options.set)
+        text += " --set " + setting;
+    if (!options.look.empty()) text += " --look " + options.look;
+    if (options.given.contains("--exposure"))
+        text += fmt::format(" --exposure {}", options.exposure);
+    if (options.given.contains("--display")) text += " --display " + options.display;
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ':' || c == '='; }, '_');
+    return fmt::format("{} --for {} -o {}{}", text, host.id, name, file.extension);
+}
+
+/// The files of the operator for each application, or for that of --for.
+void print_exact_files(const Options& options) {
+    const BakeRequest request = request_of(options);
+    fmt::print(
+        "{}: files for applications; 99.9 % of photographs are within this many codes of "
+        "255 (exact: less than 0.01; near: at most 0.5)\n",
+        options.op);
+    ExactFiles files(request, options.settings());
+    for (const LutApplication& host : all_lut_applications()) {
+        if (request.application && request.application != &host) continue;
+        fmt::print("\n  {}: {}\n", host.id, host.title);
+        const std::vector<ExactFile> found = [&] {
+            const ElapsedLine line("bake --exact");
+            return files.of(host);
+        }();
+        for (const ExactFile& file : found) {
+            fmt::print("    {:<5}  {}\n           {}\n", grade_of(file.error), file.title,
+                       command_of(file, request.op, host, options));
+        }
+    }
+}
+
 int run_bake(const Options& options) {
     if (options.exact) {
         if (options.op.empty()) throw Error("bake: OPERATOR is missing; expected one with --exact");
         if (!options.file.empty() || !options.all.empty())
             throw Error("bake: --exact writes no file; expected no -o and no --all with it");
-        print_exact_forms(options,
-                          options.host.empty() ? nullptr : &find_lut_application(options.host));
+        print_exact_files(options);
         return kOk;
     }
     if (options.all.empty()) {

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -11,13 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/strings.h"
 #include "cli/command.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "tasks/import.h"
 #include "tonewright/definition.h"
-#include "tonewright/engine.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -74,65 +71,6 @@ ShaderImport import_of(const Options& options) {
     return settings;
 }
 
-/// Colors that tell operators apart: grays, saturated colors, light above white, a negative.
-constexpr std::array<Vector3, 8> kColors = {{{0, 0, 0},
-                                             {0.01, 0.01, 0.01},
-                                             {0.18, 0.18, 0.18},
-                                             {0.9, 0.2, 0.05},
-                                             {0.02, 0.3, 0.8},
-                                             {3, 2, 0.5},
-                                             {0.5, 12, 2},
-                                             {-0.1, 0.4, 0.2}}};
-using Shown = std::array<std::array<double, kColors.size()>, 3>;
-
-/// In code values of sRGB.
-Shown shown_by(const ResolvedOperator& op) {
-    Shown shown{};
-    for (std::size_t i = 0; i < kColors.size(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c)
-            shown.at(c).at(i) = kColors.at(i).at(c);
-    }
-    const std::array<double*, 3> at = {shown[0].data(), shown[1].data(), shown[2].data()};
-    ReferenceEngine(build_view(make_view(op, "lin_rec709", 0, "srgb")))
-        .run({at[0], at[1], at[2]}, at, kColors.size());
-    return shown;
-}
-
-/// Names of built-in operators that show the same; the function may round its constants to five
-/// digits.
-std::vector<std::string> equals_of(const Shown& shown) {
-    constexpr double kSame = 1e-5;
-    std::vector<std::string> names;
-    for (const OperatorVariant& variant : all_variants()) {
-        const Shown other = shown_by(resolve_operator(variant.name, {}, variant.look));
-        double error = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            for (std::size_t i = 0; i < kColors.size(); ++i)
-                error = std::max(error, std::fabs(shown.at(c).at(i) - other.at(c).at(i)));
-        }
-        if (error < kSame) names.push_back(variant.name);
-    }
-    return names;
-}
-
-/// Judges the function by its numbers; with a warning, unless the text gave one.
-std::string judgement(const ImportedShader& shader, bool is_encoding_given) {
-    const std::shared_ptr<const Operator> op = parse_operator(shader.definition, "the definition");
-    const Shown shown = shown_by(resolve(*op, nullptr, {}, ""));
-    if (const std::vector<std::string> equals = equals_of(shown); !equals.empty())
-        return fmt::format("; it equals {}", fmt::join(equals, ", "));
-    // Code 0.64 is linear 0.36, a stop above mid gray.
-    constexpr std::size_t kGray = 2;
-    constexpr double kBright = 0.64;
-    if (const double gray = shown[1].at(kGray);
-        !is_encoding_given && shader.warnings.empty() && gray > kBright && gray < 1)
-        warn(
-            fmt::format("import: mid gray is shown as {:.2g}; if the function returns code "
-                        "values, say which: --encoded srgb, gamma22 or gamma24",
-                        gray));
-    return "";
-}
-
 int run_import(const Options& options) {
     if (!options.output.empty()) {
         if (extension_of(options.output) != ".tone")
@@ -142,18 +80,15 @@ int run_import(const Options& options) {
             throw Error("import: -o is " + options.output +
                         ", the shader itself; expected another");
     }
-    const ImportedShader shader = load_shader(options.file, import_of(options));
-    for (const std::string& warning : shader.warnings)
-        warn("import: " + warning);
-    const std::string judged = judgement(shader, !options.encoded.empty());
-    if (options.output.empty()) {
-        fmt::print("{}", shader.definition);
-    } else {
-        write_text_atomically(options.output, shader.definition);
-    }
+    const auto warn_of_import = [](const std::string& text) { warn("import: " + text); };
+    const auto& [shader, equals] =
+        import_operator(options.file, import_of(options), options.output, {.warn = warn_of_import});
+    if (options.output.empty()) fmt::print("{}", shader.definition);
     std::string others;
     for (const std::string& name : shader.others)
         others += (others.empty() ? "; others: " : ", ") + name;
+    const std::string judged =
+        equals.empty() ? "" : fmt::format("; it equals {}", fmt::join(equals, ", "));
     print_result(fmt::format("{}: function {} as {}{}{}",
                              options.output.empty() ? options.file : options.output,
                              shader.function, fmt::join(shader.stages, ", "), judged, others));

@@ -27,11 +27,16 @@
 #include "base/strings.h"
 #include "image/lut_picture.h"
 #include "image/resize.h"
+#include "image/scene_meter.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
 #include "shader_runs/shader_run.h"
 #include "tasks/bake.h"
 #include "tasks/config.h"
+#include "tasks/pictures/apply.h"
+#include "tasks/pictures/frames.h"
+#include "tasks/pictures/metering.h"
+#include "tasks/pictures/read_picture.h"
 #include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
@@ -518,53 +523,131 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     return result;
 }
 
-void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
-                       const std::string& type, const std::string& alpha, int nthreads,
-                       const std::string& subimage, const std::string& layer, bool is_in_place,
-                       double max_pixels, const std::string& compression, int quality,
-                       const std::string& subsampling, bool verifies, const std::string& resize,
-                       const py::kwargs& arguments) {
-    if (!resize.empty()) (void)parse_resize(resize);  // a wrong text
-    check_overwriting({{in, out}}, is_in_place);
-    TonemapOptions options = parse_options(op, arguments);
+/// How picture files are read, tone mapped and written.
+struct FileOptions {
+    TonemapOptions tonemap;
+    ReadOptions read;
     WriteOptions write;
-    set_alpha(write, alpha);
-    if (write.alpha == WriteOptions::Alpha::ignore || write.alpha == WriteOptions::Alpha::opaque) {
-        if (options.unpremult == TonemapOptions::Unpremult::yes)
-            throw Error("alpha is " + alpha + "; expected keep where color is divided by alpha");
-        // Without alpha, color is taken as it is.
-        options.unpremult = TonemapOptions::Unpremult::no;
-    }
-    if (!type.empty()) set_pixel_type(write, type);
-    write.compression = compression;
-    write.quality = quality;
-    write.subsampling = subsampling;
-    write.verifies = verifies;
-    const py::gil_scoped_release release;
+    int nthreads = 0;
+    bool is_in_place = false;
+};
+
+/// @param file  the arguments that concern files; the package checks their types
+FileOptions parse_file_options(const std::string& op, const py::dict& file,
+                               const py::kwargs& arguments) {
+    const auto text = [&](const char* name) { return file[name].cast<std::string>(); };
+    FileOptions options;
+    options.read.resize = text("resize");
+    if (!options.read.resize.empty()) (void)parse_resize(options.read.resize);
+    options.read.subimage = text("subimage");
+    options.read.layer = text("layer");
+    options.read.max_pixels = file["max_pixels"].cast<double>();
+    options.tonemap = parse_options(op, arguments);
+    WriteOptions& write = options.write;
+    set_alpha(write, text("alpha"));
+    take_alpha(options.tonemap, write);
+    if (const std::string type = text("type"); !type.empty()) set_pixel_type(write, type);
+    write.compression = text("compression");
+    write.quality = file["quality"].cast<int>();
+    write.subsampling = text("subsampling");
+    write.verifies = file["verify_output"].cast<bool>();
     write.write_provenance = true;
-    write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
-    ReadOptions read = {.subimage = subimage, .layer = layer, .max_pixels = max_pixels};
-    read.resize = resize;
-    read.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", in, text)); };
-    tonemap_file(Tonemapper(options), in, out, write, read, nthreads);
+    options.nthreads = file["nthreads"].cast<int>();
+    options.is_in_place = file["in_place"].cast<bool>();
+    return options;
+}
+
+void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
+                       const py::dict& file, const py::kwargs& arguments) {
+    FileOptions options = parse_file_options(op, file, arguments);
+    check_overwriting({{in, out}}, options.is_in_place);
+    const py::gil_scoped_release release;
+    options.write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
+    options.read.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", in, text)); };
+    tonemap_file(Tonemapper(options.tonemap), in, out, options.write, options.read,
+                 options.nthreads);
+}
+
+/// @param frames  text of parse_frames(), or numbers
+std::vector<int> frames_of(const py::handle& frames) {
+    return py::isinstance<py::str>(frames) ? parse_frames(frames.cast<std::string>())
+                                           : frames.cast<std::vector<int>>();
+}
+
+/// @param shot  the arguments that concern the frames and their exposures
+py::list tonemap_shot(const std::string& in, const std::string& out, const std::string& op,
+                      const py::dict& shot, const py::dict& file, const py::kwargs& arguments) {
+    const auto text = [&](const char* name) { return shot[name].cast<std::string>(); };
+    const FileOptions options = parse_file_options(op, file, arguments);
+    ExposureRequest exposure;
+    exposure.takes_sequence = shot["sequence"].cast<bool>();
+    if (const std::string method = text("auto_exposure"); !method.empty()) {
+        exposure.rule = ExposureRule{};
+        exposure.rule->method = parse_meter_method(method);
+        exposure.rule->key = shot["key"].cast<std::optional<double>>();
+        exposure.rule->compensation = shot["compensation"].cast<double>();
+        check_exposure_rule(*exposure.rule);
+    }
+    exposure.exposure_stops = options.tonemap.exposure_stops;
+    if (shot["adapt"].cast<bool>()) {
+        exposure.adaptation = Adaptation{};
+        exposure.adaptation->fps = shot["fps"].cast<double>();
+        check_adaptation(*exposure.adaptation);
+    }
+    exposure.meter.options = meter_options(options.tonemap);
+    exposure.meter.options.read = options.read;
+    exposure.meter.cache = text("meter_cache");
+    exposure.meter.work.threads = options.nthreads;
+    if (!shot["meter_frames"].is_none()) exposure.frames = frames_of(shot["meter_frames"]);
+    ShotRequest request = {.in = in,
+                           .out = out,
+                           .numbers = frames_of(shot["frames"]),
+                           .skips_existing = shot["skip_existing"].cast<bool>(),
+                           .is_in_place = options.is_in_place};
+    request.missing = static_cast<ShotRequest::Missing>(
+        find_choice("missing", text("missing"), {"error", "skip", "hold"}));
+    exposure.leaves_out_missing = request.missing != ShotRequest::Missing::error;
+    SequenceOptions sequence = {.write = options.write,
+                                .skip_existing = request.skips_existing,
+                                .jobs = shot["jobs"].cast<int>(),
+                                .nthreads = options.nthreads,
+                                .read = options.read,
+                                .names_pictures = true};
+    sequence.write.warn = sequence.read.warn = warn;
+    Shot planned;
+    {
+        const py::gil_scoped_release release;
+        Tonemapper tonemapper(options.tonemap);
+        planned = plan_shot(request);
+        meter_frames(tonemapper, planned, in, exposure, {.warn = warn});
+        tonemap_pictures(tonemapper, planned.frames, sequence, 0);
+    }
+    py::list results;
+    for (std::size_t i = 0; i < planned.frames.size(); ++i) {
+        const FrameFiles& frame = planned.frames[i];
+        py::dict d;
+        d["frame"] = planned.numbers[i];
+        d["source"] = frame.in;
+        d["target"] = frame.out;
+        d["exposure"] = frame.exposure_stops.value_or(options.tonemap.exposure_stops);
+        d["skipped"] = frame.is_skipped;
+        d["error"] = py::none();
+        if (frame.problem) d["error"] = one_line(render(*frame.problem, kStyle));
+        results.append(d);
+    }
+    return results;
 }
 
 /// Facts in the header of a picture, with the keys of `tonewright info --json`.
 py::dict describe_file(const std::string& path, const std::string& input,
                        const std::string& subimage, const std::string& layer) {
-    ReadOptions read = {.subimage = subimage, .layer = layer};
-    std::vector<std::string> warnings;
-    std::vector<std::string> choices;
-    read.warn = [&](const std::string& text) { warnings.push_back(text); };
-    read.note = [&](const std::string& text) { choices.push_back(text); };
-    PictureDescription said;
+    PictureInfo info;
     {
         const py::gil_scoped_release release;
-        said = about_picture(
-            path, [&] { return describe_picture(PictureReader(path, 1, read).spec(), input); });
+        info = read_picture_info(path, {.subimage = subimage, .layer = layer}, input);
     }
-    said.ignored.insert(said.ignored.begin(), warnings.begin(), warnings.end());
-    for (std::vector<std::string>* texts : {&said.ignored, &choices}) {
+    PictureDescription& said = info.said;
+    for (std::vector<std::string>* texts : {&said.ignored, &info.choices}) {
         for (std::string& text : *texts)
             text = render(text, kStyle);
     }
@@ -581,7 +664,7 @@ py::dict describe_file(const std::string& path, const std::string& input,
     d["alpha"] = said.alpha;
     d["rule"] = render(said.rule, kStyle);
     d["ignored"] = said.ignored;
-    d["choices"] = choices;
+    d["choices"] = info.choices;
     return d;
 }
 
@@ -604,10 +687,10 @@ py::dict describe(const Metering& metering, const ExposureRule& rule, double del
     for (std::size_t i = 0; i < metering.percentiles.size(); ++i)
         percentiles[py::float_(Metering::kPercents[i])] = metering.percentiles[i];
     d["percentiles"] = percentiles;
-    const double luminance = metered_luminance(metering, rule.method, delta);
-    d["luminance"] = luminance;
-    d["ev100"] = ev100(luminance);
-    d["exposure"] = suggested_exposure(luminance, rule);
+    const Suggestion suggestion = suggest_exposure(metering, rule, delta);
+    d["luminance"] = suggestion.luminance;
+    d["ev100"] = suggestion.ev100;
+    d["exposure"] = suggestion.stops;
     return d;
 }
 
@@ -762,10 +845,9 @@ PYBIND11_MODULE(_tonewright, m) {
     m.def("tonemap", &tw::tonemap_any, py::arg("image"), py::arg("op"), py::kw_only(),
           py::arg("roi"), py::arg("nthreads"), py::arg("progress"), py::arg("resize"));
     m.def("tonemap_file", &tw::tonemap_into_file, py::arg("source"), py::arg("target"),
-          py::arg("op"), py::kw_only(), py::arg("type"), py::arg("alpha"), py::arg("nthreads"),
-          py::arg("subimage"), py::arg("layer"), py::arg("in_place"), py::arg("max_pixels"),
-          py::arg("compression"), py::arg("quality"), py::arg("subsampling"),
-          py::arg("verify_output"), py::arg("resize"));
+          py::arg("op"), py::kw_only(), py::arg("file"));
+    m.def("tonemap_frames", &tw::tonemap_shot, py::arg("source"), py::arg("target"), py::arg("op"),
+          py::kw_only(), py::arg("shot"), py::arg("file"));
     m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"));
     m.def("meter", &tw::meter_any);
     m.def("info", &tw::describe_file, py::arg("image"), py::arg("input"), py::arg("subimage"),

@@ -23,6 +23,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
 from pictures import Report, evaluate, run  # noqa: E402
 from sanitizers import is_sanitized  # noqa: E402
+from shots import make_shot  # noqa: E402
 
 # The SIMD engine is within 1e-6 of the reference (engine.h); float32 rounds by 6e-8.
 FLOAT32 = 1.1e-6
@@ -239,7 +240,7 @@ def check_types(report, tw):
     functions = [getattr(tw, name) for name in tw.__all__ if callable(getattr(tw, name))]
     bare = [f.__name__ for f in functions if not f.__doc__ or set(inspect.signature(f).parameters) - set(f.__annotations__)
             or "return" not in f.__annotations__]
-    report.check(f"{len(functions)} functions with types and a docstring", len(functions) == 12 and not bare, bare)
+    report.check(f"{len(functions)} functions with types and a docstring", len(functions) == 13 and not bare, bare)
 
 
 def check_change(report, tw, command, scratch):
@@ -411,6 +412,36 @@ def check_warnings(report, tw, command, path, scratch):
            lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", alpha="opaque", unpremult="yes"))
 
 
+def check_frames(report, tw, command, scratch):
+    """tonemap_frames() writes the frames of `apply --frames`."""
+    folder = scratch / "shot"
+    folder.mkdir()
+    make_shot(folder, [1, 2, 3, 5])
+    pattern = folder / "in.####.exr"
+    options = {"alpha": "ignore", "auto_exposure": "mean", "missing": "skip", "statistics": "sequence"}
+    run(command, "apply", pattern, folder / "said.####.png", "--operator", "drago", "--frames", "1-5", "--missing", "skip",
+        "--statistics", "sequence", "--auto-exposure", "mean", "--adapt", "--alpha", "ignore")
+    for frames in ("1-5", [1, 2, 3, 4, 5]):
+        told = tw.tonemap_frames(pattern, folder / "out.####.png", "drago", frames, adapt=True,
+                                 meter_cache=folder / "cache.json", **options)
+        report.check(f"tonemap_frames {frames}: the frames that exist", [t["frame"] for t in told] == [1, 2, 3, 5], told)
+        report.check(f"tonemap_frames {frames}: the bytes of `apply`", all(
+            Path(t["target"]).read_bytes() == (folder / Path(t["target"]).name.replace("out", "said")).read_bytes()
+            and t["error"] is None and not t["skipped"] for t in told), told)
+    report.check("tonemap_frames: a cache of `apply`", "tonewright_meter_cache" in (folder / "cache.json").read_text())
+    again = tw.tonemap_frames(pattern, folder / "out.####.png", "drago", "1-4", skip_existing=True, alpha="ignore")
+    report.check("tonemap_frames: those that exist are skipped", [t["skipped"] for t in again] == [True, True, True, False])
+    report.check("tonemap_frames: a frame that is missing", "in.0004.exr: cannot read: No such file" in again[3]["error"], again)
+    raises(report, "tonemap_frames: adaptation of nothing", ValueError, "expected auto_exposure",
+           lambda: tw.tonemap_frames(pattern, folder / "x.####.png", "hable", "1-2", adapt=True))
+    raises(report, "tonemap_frames: frames", ValueError, "frames is 1-x; expected frames such as",
+           lambda: tw.tonemap_frames(pattern, folder / "x.####.png", "hable", "1-x"))
+    raises(report, "tonemap_frames: what missing frames do", ValueError, "missing is x; expected error, skip or hold",
+           lambda: tw.tonemap_frames(pattern, folder / "x.####.png", "hable", "1-2", missing="x"))
+    raises(report, "tonemap_frames: an option of nothing", TypeError, "sharpen",
+           lambda: tw.tonemap_frames(pattern, folder / "x.####.png", "hable", "1-2", sharpen=1))
+
+
 def check_pictures(report, tw, command, scratch):
     try:
         import OpenImageIO as oiio
@@ -461,6 +492,7 @@ def check_pictures(report, tw, command, scratch):
            lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", dtype="int"))
     check_warnings(report, tw, command, path, scratch)
     check_info(report, tw, command, path, scratch)
+    check_frames(report, tw, command, scratch)
     metered = tw.meter(path)
     said = json.loads(run(command, "meter", path, "--json"))["pictures"][0]
     report.check("meter(): the exposure of `meter`", abs(metered["exposure"] - said["exposure"]) < 1e-12

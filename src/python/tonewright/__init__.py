@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     Path = Union[str, bytes, _os.PathLike]
     Picture = Union[npt.NDArray[Any], "OpenImageIO.ImageBuf"]
 
-__all__ = ["__version__", "applications", "bake", "change_config", "displays", "evaluate", "info", "make_config", "meter", "operators", "tonemap",
-           "tonemap_file", "verify"]
+__all__ = ["__version__", "applications", "bake", "change_config", "displays", "evaluate", "info", "make_config", "meter",
+           "operators", "tonemap", "tonemap_file", "tonemap_frames", "verify"]
 
 
 def _text(name: str, value: Any) -> str:
@@ -88,6 +88,24 @@ def _options(settings: Mapping[str, Any] | None, exposure: float, input: str, di
     return {"settings": {_text("settings", name): value for name, value in (settings or {}).items()},
             "exposure": _number("exposure", exposure), "input": _text("input", input), "display": _text("display", display),
             "look": _text("look", look), "reference_white": _number("reference_white", reference_white)}
+
+
+def _file_arguments(*, settings: Mapping[str, Any] | None = None, exposure: float = 0, input: str = "auto",
+                    display: str = "srgb", look: str = "", reference_white: float = 100, input_units: str = "relative",
+                    mix: float = 1, unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None,
+                    alpha: str = "keep", subimage: int | str = "", layer: str = "", nthreads: int = 0, in_place: bool = False,
+                    max_pixels: float = 1e9, compression: str = "", quality: int = 0, subsampling: str = "",
+                    verify_output: bool = False, resize: int | str = "") -> dict[str, Any]:
+    options = _options(settings, exposure, input, display, look, reference_white)
+    options.update(input_units=_text("input_units", input_units), mix=_number("mix", mix),
+                   unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
+    options["file"] = {"type": "" if dtype is None else _text("dtype", dtype), "alpha": _text("alpha", alpha),
+                       "nthreads": _operator.index(nthreads), "subimage": str(subimage), "layer": _text("layer", layer),
+                       "in_place": bool(in_place), "max_pixels": _number("max_pixels", max_pixels),
+                       "compression": _text("compression", compression), "quality": _operator.index(quality),
+                       "subsampling": _text("subsampling", subsampling), "verify_output": bool(verify_output),
+                       "resize": str(resize)}
+    return options
 
 
 def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0, input: str = "auto",
@@ -151,15 +169,52 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
 
     Example: tonewright.tonemap_file("shot.exr", "shot.png", "hable", settings={"white": 8})
     """
-    options = _options(settings, exposure, input, display, look, reference_white)
-    options.update(input_units=_text("input_units", input_units), mix=_number("mix", mix),
-                   unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
-    _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
-                             type="" if dtype is None else _text("dtype", dtype), alpha=_text("alpha", alpha),
-                             nthreads=_operator.index(nthreads), subimage=str(subimage), layer=_text("layer", layer),
-                             in_place=bool(in_place), max_pixels=_number("max_pixels", max_pixels),
-                             compression=_text("compression", compression), quality=_operator.index(quality),
-                             subsampling=_text("subsampling", subsampling), verify_output=bool(verify_output), resize=str(resize), **options)
+    _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op), **_file_arguments(
+        settings=settings, exposure=exposure, input=input, display=display, look=look, reference_white=reference_white,
+        input_units=input_units, mix=mix, unpremult=unpremult, statistics=statistics, dtype=dtype, alpha=alpha,
+        subimage=subimage, layer=layer, nthreads=nthreads, in_place=in_place, max_pixels=max_pixels, compression=compression,
+        quality=quality, subsampling=subsampling, verify_output=verify_output, resize=resize))
+
+
+def tonemap_frames(source: Path, target: Path, op: str, frames: str | Iterable[int], *, missing: str = "error",
+                   skip_existing: bool = False, jobs: int = 0, statistics: str = "picture", auto_exposure: str = "",
+                   key: float | None = None, compensation: float = 0, adapt: bool = False, fps: float = 24,
+                   meter_frames: str | Iterable[int] | None = None, meter_cache: Path | None = None,
+                   **options: Any) -> list[dict[str, Any]]:
+    """Tone map the frames of a shot, as `tonewright apply --frames` does. A frame that fails does not stop the others.
+
+    source, target: names with %04d, #### or @@@@ for the number.
+    frames: numbers, or a text such as "1001-1100", "1-9x2" or "1,5,10-20".
+    missing: missing source frames: "error", "skip", or "hold" (use the last earlier frame).
+    skip_existing: skip frames whose target is complete and newer than the source.
+    jobs: number of frames at a time; 0 is the number of threads.
+    statistics: "picture", "sequence" (operators measure all metered frames together) or "defaults".
+    auto_exposure: meter the frames by "log-average", "histogram", "mean" or "max" (default: no metering).
+    key, compensation: as meter(). The exposure is added.
+    adapt: adapt the exposure from frame to frame, as an eye does, at `fps` frames per second.
+    meter_frames: frames of the whole shot, if `frames` has only some of them.
+    meter_cache: file that keeps metered luminances; changed frames are metered again.
+    options: as tonemap_file().
+
+    The result has a dict for each frame with frame, source, target, exposure (stops), skipped, and error (None or a text).
+
+    Example: tonewright.tonemap_frames("shot.####.exr", "shot.####.png", "hable", "1001-1100", auto_exposure="mean")
+    """
+    def numbers(value: str | Iterable[int]) -> str | list[int]:
+        return value if isinstance(value, str) else [_operator.index(number) for number in value]
+
+    if adapt and not auto_exposure:
+        raise ValueError("adapt is True; expected auto_exposure with it")
+    is_sequence = _text("statistics", statistics) == "sequence"
+    return _tonewright.tonemap_frames(
+        _path("source", source), _path("target", target), _text("op", op),
+        shot={"frames": numbers(frames), "missing": _text("missing", missing), "skip_existing": bool(skip_existing),
+              "jobs": _operator.index(jobs), "sequence": is_sequence, "auto_exposure": _text("auto_exposure", auto_exposure),
+              "key": None if key is None else _number("key", key), "compensation": _number("compensation", compensation),
+              "adapt": bool(adapt), "fps": _number("fps", fps),
+              "meter_frames": None if meter_frames is None else numbers(meter_frames),
+              "meter_cache": "" if meter_cache is None else _path("meter_cache", meter_cache)},
+        **_file_arguments(statistics="picture" if is_sequence else statistics, **options))
 
 
 def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,

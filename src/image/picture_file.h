@@ -25,6 +25,10 @@
 /// Picture files, a few rows at a time. Reading and writing succeed completely or fail.
 TONEWRIGHT_NAMESPACE_BEGIN
 
+class LightLevelMeter;
+class OutputFile;
+struct FormatLimits;
+
 /// `DateTime` of pictures that have none: that of the environment variable SOURCE_DATE_EPOCH, UTC
 /// (reproducible-builds.org/specs/source-date-epoch). Empty: it is not set.
 /// @throws Error  it is not a number of seconds since 1970
@@ -186,9 +190,6 @@ class TONEWRIGHT_API PictureWriter {
     void finish();
 
   private:
-    class FileProxy;
-    class LightLevelMeter;
-
     [[noreturn]] void fail(const std::string& reason) const;
     [[noreturn]] void fail(const Problem& why) const;
     void check_disk() const;
@@ -197,19 +198,18 @@ class TONEWRIGHT_API PictureWriter {
     void check_blocks() const;
     [[nodiscard]] OIIO::ImageSpec plan(const OIIO::ImageSpec& picture);
     void plan_alpha(OIIO::ImageSpec& spec);
+    void plan_channels(OIIO::ImageSpec& spec, const FormatLimits& limits);
+    void plan_window(OIIO::ImageSpec& spec, const OIIO::ImageSpec& picture,
+                     const FormatLimits& limits);
+    void plan_cover(OIIO::ImageSpec& spec, const OIIO::ImageSpec& picture,
+                    const FormatLimits& limits);
+    void plan_type(OIIO::ImageSpec& spec, const OIIO::ImageSpec& picture,
+                   const FormatLimits& limits) const;
     [[nodiscard]] OIIO::ImageBuf select_channels(const OIIO::ImageBuf& picture) const;
-    /// Compares the temporary file with what was to be written.
-    void check_written(const OIIO::ImageSpec& requested, std::string_view file_format,
-                       bool is_avif) const;
-    void check_pixels(PictureReader& written, const OIIO::ImageSpec& requested,
-                      std::string_view file_format) const;
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
     [[nodiscard]] std::string_view format() const;
     /// The format, or `avif`.
     [[nodiscard]] std::string_view codec() const;
-    void check_compression() const;
-    void check_subsampling() const;
-    void set_compression(OIIO::ImageSpec& spec) const;
     /// Limitations of the file, in one warning.
     void warn_of_limits(const OIIO::ImageSpec& requested, const std::string& missing) const;
     [[nodiscard]] std::string cut_off(const OIIO::ImageSpec& picture) const;
@@ -232,7 +232,6 @@ class TONEWRIGHT_API PictureWriter {
     double lost_count_ = 0;             // pixels whose light straight alpha cannot hold
     std::optional<OIIO::ROI> window_;   // to write; none: all of the picture
     bool divides_by_alpha_ = false;
-    bool has_proxy_ = false;   // wrote through one
     std::vector<float> kept_;  // what was written, for WriteOptions::verifies
     int last_row_ = 0;         // of the picture, exclusive
     int next_row_ = 0;         // of the window, or of the picture
@@ -242,7 +241,7 @@ class TONEWRIGHT_API PictureWriter {
     std::size_t light_levels_place_ = 0;             // of their chunk in the file
     // The order matters: at its end, the writer writes to the proxy, which writes to the file.
     std::unique_ptr<AtomicFile> temporary_;
-    std::unique_ptr<FileProxy> proxy_;  // null: OIIO opens the file itself
+    std::unique_ptr<OutputFile> proxy_;  // null: OIIO opens the file itself
     std::unique_ptr<OIIO::ImageOutput> out_;
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagecache.h>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -10,16 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -29,12 +20,14 @@
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
-#include "base/system_files.h"
 #include "image/color_tags.h"
+#include "image/compression.h"
 #include "image/format_limits.h"
+#include "image/light_levels.h"
+#include "image/output_file.h"
 #include "image/picture_file.h"
 #include "image/png_chunks.h"
-#include "tonewright/engine.h"
+#include "image/written_picture.h"
 #include "tonewright/error.h"
 #include "tonewright/view.h"
 
@@ -46,59 +39,9 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::ROI;
 
-/// Compressions of the formats that have several, or a quality, by OpenImageIO's names. Its writers
-/// silently replace an unknown name by the default.
-struct FormatCompressions {
-    std::string_view format;
-    std::vector<std::string> names;
-    std::vector<std::string> with_quality;
-};
-const FormatCompressions* compressions_of(std::string_view format) {
-    static const std::vector<FormatCompressions> all = {
-        {"openexr",
-         {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"},
-         {"dwaa", "dwab"}},
-        {"tiff", {"none", "lzw", "zip", "packbits", "jpeg"}, {"jpeg"}},
-        {"jpeg", {"jpeg"}, {"jpeg"}},
-        {"webp", {"webp", "lossless"}, {"webp"}},
-        {"heif", {"heic", "none"}, {"heic"}},
-        {"avif", {"avif"}, {"avif"}},
-        {"png", {"default", "filtered", "huffman", "rle", "fixed"}, {}},
-        {"targa", {"none", "rle"}, {}},
-        {"iff", {"none", "rle"}, {}},
-    };
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const auto& row) { return row.format == format; });
-    return found == all.end() ? nullptr : &*found;
-}
-
 /// A share of 0 to 1 as percent, rounded up, so that a single pixel is not 0 %.
 std::string percent_text(double share) {
     return fmt::format("{:.3g}", std::ceil(1000 * share) / 10);
-}
-
-/// Rows of the blocks that a compression of OpenEXR makes (ImfCompressor.cpp); 0 for other names.
-int rows_of_block(std::string_view compression) {
-    static const std::map<std::string_view, int> rows = {
-        {"none", 1}, {"rle", 1},  {"zips", 1},  {"zip", 16},  {"pxr24", 16},
-        {"piz", 32}, {"b44", 32}, {"b44a", 32}, {"dwaa", 32}, {"dwab", 256}};
-    const auto found = rows.find(compression.substr(0, compression.find(':')));
-    return found == rows.end() ? 0 : found->second;
-}
-
-/// Only heif files need this check, because the name does not state the codec. ISO/IEC 14496-12,
-/// 4.3: the brand of a file is in its box `ftyp`.
-std::string brand_of(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 12> start{};
-    file.read(start.data(), start.size());
-    return {start.data() + 8, 4};
-}
-
-/// A reason of a temporary file, whose name says nothing to a user.
-std::string without_name(const std::string& text, const std::string& name) {
-    const std::string begin = name + ": ";
-    return text.starts_with(begin) ? text.substr(begin.size()) : text;
 }
 
 std::string title_of(const OIIO::TypeDesc& type) {
@@ -108,192 +51,6 @@ std::string title_of(const OIIO::TypeDesc& type) {
 }
 
 }  // namespace
-
-/// The file of OIIO's writers. They do not check whether their last bytes reached the disk (PNG:
-/// none of them), and libjpeg ends the process after a failed write. This file therefore accepts
-/// everything, and remembers the first error.
-class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
-  public:
-    explicit FileProxy(AtomicFile& target) : IOProxy(target.path().string(), Write) {
-        const int file = target.create();
-        if (file >= 0) file_ = ::fdopen(file, "wb");
-        if (!file_) {
-            errno_ = errno;
-            return;
-        }
-        std::setvbuf(file_, nullptr, _IOFBF, std::size_t{1} << 20);  // some write byte by byte
-    }
-    ~FileProxy() override {
-        if (file_) std::fclose(file_);
-    }
-    FileProxy(const FileProxy&) = delete;
-    FileProxy& operator=(const FileProxy&) = delete;
-
-    /// Inserts `bytes` at `place`, which the writer passes once.
-    void insert(std::size_t place, std::string bytes) {
-        place_ = static_cast<int64_t>(place);
-        inserted_ = std::move(bytes);
-    }
-
-    /// Replaces bytes that were written.
-    /// @param place  in the file, after what was inserted
-    void patch(std::size_t place, std::string_view bytes) {
-        if (!errno_ && ::fseeko(file_, static_cast<off_t>(place), SEEK_SET) != 0) errno_ = errno;
-        put(bytes.data(), bytes.size());
-    }
-
-    /// Begins to count the blocks of an OpenEXR file, each of which begins with its first row and
-    /// its size in bytes, four bytes each.
-    void begin_blocks() { next_block_ = m_pos; }
-    [[nodiscard]] int blocks() const { return blocks_; }
-
-    [[nodiscard]] const char* proxytype() const override { return "tonewright"; }
-    bool seek(int64_t offset) override {
-        if (offset == m_pos) return true;
-        if (!errno_ && ::fseeko(file_, offset + shift_, SEEK_SET) != 0) errno_ = errno;
-        m_pos = offset;
-        return true;
-    }
-    std::size_t write(const void* bytes, std::size_t size) override {
-        const auto* from = static_cast<const char*>(bytes);
-        std::size_t before = 0;
-        if (!inserted_.empty() && m_pos <= place_ && m_pos + static_cast<int64_t>(size) > place_) {
-            before = static_cast<std::size_t>(place_ - m_pos);
-            put(from, before);
-            put(inserted_.data(), inserted_.size());
-            shift_ = static_cast<int64_t>(inserted_.size());
-            inserted_.clear();
-        }
-        put(from + before, size - before);
-        if (next_block_ >= 0) count_blocks(from, size);
-        m_pos += static_cast<int64_t>(size);
-        size_ = std::max(size_, m_pos);
-        return size;
-    }
-    std::size_t pwrite(const void* bytes, std::size_t size, int64_t offset) override {
-        const int64_t here = m_pos;
-        seek(offset);
-        write(bytes, size);
-        seek(here);
-        return size;
-    }
-    [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(size_); }
-
-    /// The first error: an errno, or 0.
-    [[nodiscard]] int error_number() const { return errno_; }
-    /// Passes everything to the system.
-    /// @returns  0 or an errno
-    [[nodiscard]] int finish() {
-        if (!file_) return errno_;
-        if (std::fclose(std::exchange(file_, nullptr)) != 0 && !errno_) errno_ = errno;
-        return errno_;
-    }
-
-  private:
-    void put(const char* bytes, std::size_t size) {
-        if (errno_ || size == 0) return;
-        if (std::fwrite(bytes, 1, size, file_) != size) errno_ = errno ? errno : EIO;
-    }
-
-    void count_blocks(const char* bytes, std::size_t size) {
-        const int64_t end = m_pos + static_cast<int64_t>(size);
-        for (int64_t at = std::max(m_pos, next_block_); at < end && at < next_block_ + 8; ++at) {
-            block_[static_cast<std::size_t>(at - next_block_)] =
-                static_cast<unsigned char>(bytes[at - m_pos]);
-            if (at - next_block_ < 7) continue;
-            ++blocks_;
-            std::uint32_t rest = 0;
-            for (std::size_t i = 8; i-- > 4;)
-                rest = rest << 8U | block_[i];
-            next_block_ = at + 1 + rest;
-            at = next_block_ - 1;
-        }
-    }
-
-    std::FILE* file_ = nullptr;
-    int errno_ = 0;
-    int64_t size_ = 0;
-    int64_t next_block_ = -1;  // where one begins
-    std::array<unsigned char, 8> block_{};
-    int blocks_ = 0;
-    std::string inserted_;  // not yet
-    int64_t place_ = 0;
-    int64_t shift_ = 0;  // of what follows it
-};
-
-/// Measures the light of rows that hold code values of an HDR display.
-class PictureWriter::LightLevelMeter {
-  public:
-    explicit LightLevelMeter(const Display& display) : to_light_(display.decode) {}
-
-    /// @param type   of the file, whose rounded values count
-    /// @param alpha  -1: none
-    void add(const ImageBuf& rows, const OIIO::TypeDesc& type, int alpha) {
-        const ROI part = rows.roi();
-        const auto channels = static_cast<std::size_t>(rows.nchannels());
-        const bool is_gray = channels < 3;
-        const float most = type == OIIO::TypeDesc::UINT8 ? 255 : 65535;
-        const auto width = static_cast<std::size_t>(part.width());
-        std::vector<float> pixels(width * channels);
-        std::vector<float> rgb(3 * width);
-        for (int y = part.ybegin; y < part.yend; ++y) {
-            ROI line = part;
-            line.ybegin = y;
-            line.yend = y + 1;
-            rows.get_pixels(line, OIIO::TypeFloat, pixels.data());
-            for (std::size_t i = 0; i < width; ++i) {
-                const float* pixel = &pixels[i * channels];
-                const bool is_hidden = alpha >= 0 && pixel[alpha] <= 0;
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const float code = is_hidden ? 0 : pixel[is_gray ? 0 : c];
-                    rgb[3 * i + c] = std::round(std::clamp(code, 0.0F, 1.0F) * most) / most;
-                }
-            }
-            to_light_.run_rgb(rgb.data(), rgb.data(), width);
-            for (std::size_t i = 0; i < width; ++i) {
-                const auto light =
-                    static_cast<double>(std::max({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}));
-                largest_ = std::max(largest_, light);
-                sum_ += light;
-            }
-            count_ += static_cast<double>(width);
-        }
-    }
-    [[nodiscard]] LightLevels levels() const {
-        return {largest_ * kUnitLuminance, sum_ / std::max(count_, 1.0) * kUnitLuminance};
-    }
-
-  private:
-    SimdEngine to_light_;
-    double largest_ = 0;
-    double sum_ = 0;
-    double count_ = 0;
-};
-
-// ---------------------------------------------------------------------------------------------
-
-std::string date_text(std::time_t seconds) {
-    std::tm utc{};
-    ::gmtime_r(&seconds, &utc);
-    std::array<char, 32> text{};
-    (void)std::strftime(text.data(), text.size(), "%Y:%m:%d %H:%M:%S", &utc);
-    return text.data();
-}
-
-std::string source_date() {
-    const char* const value = std::getenv("SOURCE_DATE_EPOCH");
-    if (!value || !*value) return {};
-    const std::string_view text = value;
-    constexpr std::int64_t kYear10000 = 253402300800;  // DateTime has four digits for a year
-    std::int64_t seconds = -1;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-    if (error != std::errc() || end != text.data() + text.size() || seconds < 0 ||
-        seconds >= kYear10000) {
-        throw Error(fmt::format("SOURCE_DATE_EPOCH is {}; expected seconds since 1970, [0, {})",
-                                text, kYear10000));
-    }
-    return date_text(static_cast<std::time_t>(seconds));
-}
 
 PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int nthreads)
     : path_(path), options_(std::move(options)) {
@@ -306,8 +63,7 @@ PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int 
                                     : "the name has no extension that selects a format");
     }
     out_->threads(nthreads);
-    check_compression();
-    check_subsampling();
+    check_compression(path_, codec(), options_);
     if (options_.bits > 0 && !format_limits(format()).has_bits) {
         throw Error(
             fmt::format("{}: type is uint{}; expected uint8, uint16, half or float, because "
@@ -322,92 +78,6 @@ std::string_view PictureWriter::codec() const {
     const bool is_avif = format() == "heif" &&
                          OIIO::Strutil::iequals(temporary_->target().extension().string(), ".avif");
     return is_avif ? "avif" : format();
-}
-
-void PictureWriter::check_compression() const {
-    const std::string& text = options_.compression;
-    const int quality = options_.quality;
-    const FormatCompressions* known = compressions_of(codec());
-    const std::size_t colon = std::min(text.find(':'), text.size());
-    const std::string name = text.substr(0, colon);
-    if (!name.empty()) {
-        if (!known) {
-            throw Error(
-                fmt::format("{}: compression is {}; expected none, because {} has one method only",
-                            path_, text, format()));
-        }
-        if (std::find(known->names.begin(), known->names.end(), name) == known->names.end()) {
-            throw Error(fmt::format("{}: compression is {}; expected {}{}", path_, text,
-                                    join_choices(known->names), did_you_mean(name, known->names)));
-        }
-    }
-    const bool has_number = colon < text.size();
-    if (has_number) {
-        const std::string_view digits = std::string_view(text).substr(colon + 1);
-        int number = 0;
-        const auto [end, error] =
-            std::from_chars(digits.data(), digits.data() + digits.size(), number);
-        if (error != std::errc() || end != digits.data() + digits.size() || number < 1)
-            throw Error(
-                fmt::format("{}: compression is {}; expected a quality of 1 or more after "
-                            "the colon",
-                            path_, text));
-    }
-    if (quality == 0 && !has_number) return;
-    if (quality != 0 && (quality < 1 || quality > 100))
-        throw Error(fmt::format("{}: quality is {}; expected [1, 100]", path_, quality));
-    const std::vector<std::string> none;
-    const std::vector<std::string>& with = known ? known->with_quality : none;
-    const bool is_default =
-        name.empty() && (format() == "jpeg" || format() == "webp" || format() == "heif");
-    if (is_default || std::find(with.begin(), with.end(), name) != with.end()) return;
-    throw Error({.what = path_,
-                 .parameter = "quality",
-                 .value = has_number ? text.substr(colon + 1) : fmt::to_string(quality),
-                 .expected = with.empty()
-                                 ? fmt::format("none, because {} is lossless", format())
-                                 : fmt::format("<<compression={}>> with it", join_choices(with))});
-}
-
-void PictureWriter::check_subsampling() const {
-    const std::string& text = options_.subsampling;
-    if (text.empty()) return;
-    if (format() != "jpeg") {
-        throw Error(fmt::format("{}: subsampling is {}; expected none, because {}", path_, text,
-                                format() == "webp" || format() == "heif"
-                                    ? fmt::format("the writer of {} has one kind only (4:2:0)",
-                                                  format() == "webp" ? "WebP" : "HEIF and AVIF")
-                                    : fmt::format("only JPEG has it, and not {}", format())));
-    }
-    const std::vector<std::string> names = {"4:4:4", "4:2:2", "4:2:0", "4:1:1"};
-    if (std::find(names.begin(), names.end(), text) != names.end()) return;
-    throw Error(fmt::format("{}: subsampling is {}; expected {}{}", path_, text,
-                            join_choices(names), did_you_mean(text, names)));
-}
-
-void PictureWriter::set_compression(ImageSpec& spec) const {
-    // The source's compression may be one of another format, or have a quality of its own.
-    const FormatCompressions* known = compressions_of(codec());
-    const std::string name = spec.get_string_attribute("compression");
-    const bool is_known = known && std::find(known->names.begin(), known->names.end(),
-                                             name.substr(0, name.find(':'))) != known->names.end();
-    if (!is_known || options_.quality > 0) erase_attributes(spec, "compression");
-    if (!options_.compression.empty()) spec.attribute("compression", options_.compression);
-    if (options_.quality > 0) spec.attribute("CompressionQuality", options_.quality);
-    // OpenImageIO selects AV1 by the name of a file, but only without another compression.
-    if (codec() == "avif" && options_.compression.empty()) {
-        spec.attribute("compression",
-                       options_.quality > 0 ? fmt::format("avif:{}", options_.quality) : "avif");
-    }
-    if (format() != "jpeg") return;
-    // Half the resolution of chroma shows most where a thin line is saturated: pure red on black
-    // becomes half as bright. ImageMagick and libvips use the same limit.
-    constexpr int kFullChromaQuality = 90;
-    constexpr int kDefaultQuality = 98;  // of OpenImageIO's writer
-    const int quality = spec.decode_compression_metadata("jpeg", kDefaultQuality).second;
-    spec.attribute("jpeg:subsampling", !options_.subsampling.empty()   ? options_.subsampling
-                                       : quality >= kFullChromaQuality ? "4:4:4"
-                                                                       : "4:2:0");
 }
 
 PictureWriter::~PictureWriter() = default;
@@ -459,13 +129,7 @@ void PictureWriter::plan_alpha(ImageSpec& spec) {
         erase_attributes(spec, "oiio:UnassociatedAlpha");
 }
 
-ImageSpec PictureWriter::plan(const ImageSpec& picture) {
-    ImageSpec spec = picture;
-    spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
-    spec.channelformats.clear();
-    // A single level is not a texture: OpenEXR's writer would wait for the others.
-    if (spec.get_string_attribute("textureformat") == "Plain Texture")
-        erase_attributes(spec, "textureformat");
+void PictureWriter::plan_channels(ImageSpec& spec, const FormatLimits& limits) {
     const bool is_over = options_.alpha == WriteOptions::Alpha::over && spec.alpha_channel >= 0;
     const std::array<float, 3>& back = options_.background;
     if (is_over && spec.nchannels < 3 && (back[0] != back[1] || back[1] != back[2])) {
@@ -475,7 +139,6 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
                         back[0], back[1], back[2]));
     }
     plan_alpha(spec);
-    const FormatLimits& limits = format_limits(format());
     channels_ =
         file_channels(spec, limits, options_.alpha == WriteOptions::Alpha::ignore || is_over);
     if (channels_.empty())
@@ -493,7 +156,10 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
         pixel.depth = spec.depth;
         spec = std::move(pixel);
     }
+}
 
+void PictureWriter::plan_window(ImageSpec& spec, const ImageSpec& picture,
+                                const FormatLimits& limits) {
     // Viewers show the display window. Formats without data windows store only that.
     const ROI window = picture.roi_full();
     const ROI data = picture.roi();
@@ -525,10 +191,10 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
         spec.height = spec.full_height = window.height();
         spec.depth = spec.full_depth = window.depth();
     }
+}
 
-    if (const std::string refusal = size_refusal(limits, spec.width, spec.height); !refusal.empty())
-        fail(refusal);
-
+void PictureWriter::plan_cover(ImageSpec& spec, const ImageSpec& picture,
+                               const FormatLimits& limits) {
     // OIIO's writers divide integers, rounding down, and for "Gamma2.2" and similar spaces some
     // divide by a power of alpha: 0.25 of 0.5 becomes 1.
     const bool is_associated =
@@ -545,7 +211,10 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     // OpenEXR's viewers show color with zero alpha, and elements such as flames have nothing else.
     watches_cover_ =
         alpha_ >= 0 && options_.alpha == WriteOptions::Alpha::keep && format() != "openexr";
+}
 
+void PictureWriter::plan_type(ImageSpec& spec, const ImageSpec& picture,
+                              const FormatLimits& limits) const {
     OIIO::TypeDesc type = limits.is_8_bit ? OIIO::TypeDesc::UINT8 : options_.type;
     const std::optional<TaggedColor> color = tagged_color(picture);
     // ITU-R BT.2100-2 has 10 and 12 bits: 8 show bands.
@@ -557,7 +226,23 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     if (type != OIIO::TypeUnknown)
         erase_attributes(spec, "oiio:BitsPerSample");  // overrules the type
     if (options_.bits > 0) spec.attribute("oiio:BitsPerSample", options_.bits);
-    set_compression(spec);
+}
+
+ImageSpec PictureWriter::plan(const ImageSpec& picture) {
+    ImageSpec spec = picture;
+    spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
+    spec.channelformats.clear();
+    // A single level is not a texture: OpenEXR's writer would wait for the others.
+    if (spec.get_string_attribute("textureformat") == "Plain Texture")
+        erase_attributes(spec, "textureformat");
+    const FormatLimits& limits = format_limits(format());
+    plan_channels(spec, limits);
+    plan_window(spec, picture, limits);
+    if (const std::string refusal = size_refusal(limits, spec.width, spec.height); !refusal.empty())
+        fail(refusal);
+    plan_cover(spec, picture, limits);
+    plan_type(spec, picture, limits);
+    set_compression(spec, codec(), options_);
     if (format() != "openexr") {  // the only format whose color tags they are
         erase_attributes(spec, "colorInteropID");
         if (format() != "png" || !options_.write_provenance) erase_attributes(spec, "tonewright:*");
@@ -605,7 +290,7 @@ void PictureWriter::open(const ImageSpec& picture) {
     // sRGB), and a proxy for writing cannot be read: the file would lack its first directory.
     std::string name = temporary_->path().string();
     if (out_->supports("ioproxy") && format() != "tiff") {
-        proxy_ = std::make_unique<FileProxy>(*temporary_);
+        proxy_ = std::make_unique<OutputFile>(*temporary_);
         check_disk();
         if (!color.chunk.empty()) {
             // The levels are known at the end: until then, a chunk without light has their place.
@@ -845,134 +530,6 @@ void PictureWriter::check_blocks() const {
         fail("OpenEXR could not compress all rows (not enough memory?)");
 }
 
-void PictureWriter::check_written(const ImageSpec& requested, std::string_view file_format,
-                                  bool is_avif) const {
-    if (is_avif && !brand_of(temporary_->path()).starts_with("avi")) {
-        fail(
-            "this OpenImageIO writes HEVC under the name of AVIF, not AV1; write a PNG file, and "
-            "use avifenc");
-    }
-    if (file_format == "null" || file_format == "term") return;
-    std::optional<PictureReader> written;
-    try {
-        written.emplace(temporary_->path().string(), 0, ReadOptions{.max_pixels = kUnlimited});
-    } catch (const FileError& e) {
-        // Writers without our own file do not report a full disk.
-        fail(fmt::format("what was written cannot be read back{}: {}",
-                         has_proxy_ ? "" : " (disk full?)",
-                         without_name(e.what(), temporary_->path().string())));
-    }
-    const ImageSpec& is = written->spec();
-    const auto differs = [&](const char* what, const auto& found, const auto& expected) {
-        fail(fmt::format("what was written reads back with {} {}; expected {}", what, found,
-                         expected));
-    };
-    if (is.width != requested.width || is.height != requested.height) {
-        differs("size", fmt::format("{} x {}", is.width, is.height),
-                fmt::format("{} x {}", requested.width, requested.height));
-    }
-    // The reader of GIF adds alpha, and that of FITS has only signed integers.
-    const bool adds_alpha = file_format == "gif" && is.nchannels == requested.nchannels + 1;
-    const bool drops_alpha = file_format == "webp" && is.nchannels == requested.nchannels - 1;
-    if (is.nchannels != requested.nchannels && !adds_alpha && !drops_alpha)
-        differs("channels", is.nchannels, requested.nchannels);
-    if (is.format != requested.format && file_format != "fits")
-        differs("type", is.format.c_str(), requested.format.c_str());
-    if (format_limits(file_format).windows != FileWindows::none &&
-        (is.x != requested.x || is.y != requested.y || is.full_width != requested.full_width ||
-         is.full_height != requested.full_height)) {
-        differs(
-            "window",
-            fmt::format("{}+{}+{} of {} x {}", is.width, is.x, is.y, is.full_width, is.full_height),
-            fmt::format("{}+{}+{} of {} x {}", requested.width, requested.x, requested.y,
-                        requested.full_width, requested.full_height));
-    }
-    if (options_.verifies) {
-        check_pixels(*written, requested, file_format);
-    } else if (!has_proxy_) {
-        try {
-            check_is_complete(*written);  // there is no other proof
-        } catch (const FileError&) {
-            fail("what was written cannot be read back (disk full?)");
-        }
-    }
-}
-
-void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& requested,
-                                 std::string_view file_format) const {
-    const ImageBuf is = [&] {
-        try {
-            return written.read_all().copy(OIIO::TypeFloat);
-        } catch (const FileError& e) {
-            // Writers without our own file do not report a full disk.
-            fail(fmt::format("what was written cannot be read back{}: {}",
-                             has_proxy_ ? "" : " (disk full?)",
-                             without_name(e.what(), temporary_->path().string())));
-        }
-    }();
-    const std::string compression = requested.get_string_attribute("compression");
-    constexpr std::array<std::string_view, 7> kLossless = {"none", "rle", "zip",     "zips",
-                                                           "piz",  "lzw", "packbits"};
-    const bool is_lossless_exr =
-        compression.empty() ||
-        std::find(kLossless.begin(), kLossless.end(), compression) != kLossless.end();
-    constexpr std::array<std::string_view, 9> kExact = {"png", "targa", "bmp", "sgi", "dpx",
-                                                        "pnm", "rla",   "ico", "iff"};
-    const bool is_exact = std::find(kExact.begin(), kExact.end(), file_format) != kExact.end() ||
-                          (is_lossless_exr && (file_format == "openexr" || file_format == "tiff"));
-    const OIIO::TypeDesc type = requested.format;
-    const bool is_integer = !type.is_floating_point();
-    // One code value: half for rounding, half for dither.
-    const int bits = options_.bits > 0 ? options_.bits : static_cast<int>(8 * type.size());
-    const double step = 1.001 / (std::exp2(bits) - 1);
-    const int channels = std::min(is.nchannels(), requested.nchannels);
-    std::vector<float> pixel(static_cast<std::size_t>(is.nchannels()));
-    double worst = 0;
-    // Compression changes pixels, but hardly the sums of blocks.
-    constexpr int kBlock = 8;
-    const int columns = (requested.width + kBlock - 1) / kBlock;
-    const int block_rows = (requested.height + kBlock - 1) / kBlock;
-    std::vector<double> sums(static_cast<std::size_t>(columns) *
-                             static_cast<std::size_t>(block_rows) *
-                             static_cast<std::size_t>(channels));
-    for (ImageBuf::ConstIterator<float> p(is); !p.done(); ++p) {
-        const std::size_t at = (static_cast<std::size_t>(p.y() - requested.y) *
-                                    static_cast<std::size_t>(requested.width) +
-                                static_cast<std::size_t>(p.x() - requested.x)) *
-                               static_cast<std::size_t>(requested.nchannels);
-        for (int c = 0; c < channels; ++c) {
-            auto should = static_cast<double>(kept_[at + static_cast<std::size_t>(c)]);
-            if (is_integer || !is_exact) should = std::clamp(should, 0.0, 1.0);
-            const double found = is_exact ? static_cast<double>(p[c])
-                                          : std::clamp(static_cast<double>(p[c]), 0.0, 1.0);
-            const double allowed = is_integer                     ? step
-                                   : type == OIIO::TypeDesc::HALF ? std::fabs(should) / 1024 + 1e-7
-                                                                  : std::fabs(should) * 1e-6;
-            const double difference = std::fabs(found - should);
-            worst = std::max(worst, difference > allowed || std::isnan(difference)
-                                        ? std::max(difference, 1e-9)
-                                        : 0);
-            const int block =
-                (p.y() - requested.y) / kBlock * columns + (p.x() - requested.x) / kBlock;
-            sums[static_cast<std::size_t>(block) * static_cast<std::size_t>(channels) +
-                 static_cast<std::size_t>(c)] += found - should;
-        }
-    }
-    // Bound of the loss by compression of the lowest quality. Channels in another order, rows at
-    // another place and black pictures lose more.
-    constexpr double kLossyMean = 0.1;
-    const double sum = std::accumulate(sums.begin(), sums.end(), 0.0,
-                                       [](double all, double x) { return all + std::fabs(x); });
-    const double mean = sum / (static_cast<double>(kept_.size()) + 1e-9);
-    if (is_exact && worst > 0)
-        fail(fmt::format("what was written reads back with pixels that differ by {:.3g}", worst));
-    // GIF has 256 colors, and alpha of one bit.
-    if (!is_exact && file_format != "gif" && !(mean <= kLossyMean)) {
-        fail(fmt::format("what was written reads back with pixels that differ by {:.3g} on average",
-                         mean));
-    }
-}
-
 void PictureWriter::finish() {
     warn_of_cover();
     const bool is_avif = codec() == "avif";
@@ -981,11 +538,18 @@ void PictureWriter::finish() {
     if (!out_->close()) fail(problem_of_library(out_->geterror()));
     out_.reset();  // some write their last bytes only now
     if (light_levels_) proxy_->patch(light_levels_place_, clli_chunk(light_levels_->levels()));
-    if (proxy_) {
+    const bool has_proxy = proxy_ != nullptr;
+    if (has_proxy) {
         if (const int error = proxy_->finish()) fail(problem_of_system(error));
-        has_proxy_ = true;
     }
-    check_written(requested, file_format, is_avif);
+    const std::string fault = fault_of({.path = temporary_->path().string(),
+                                        .spec = requested,
+                                        .format = file_format,
+                                        .is_avif = is_avif,
+                                        .is_opened_by_name = !has_proxy,
+                                        .bits = options_.bits,
+                                        .pixels = options_.verifies ? &kept_ : nullptr});
+    if (!fault.empty()) fail(fault);
     if (const int error = temporary_->keep()) fail(problem_of_system(error));
     // Readers that use OIIO's shared cache get the new file.
     auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one

@@ -1,21 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures that declare 100000 x 100000 pixels in a few bytes are refused before they take memory; 1 GiB is enough.
 
-    python3 tests/cli/test_limits.py build/release/bin/tonewright
-
-Every run has an address space of 1 GiB. A picture that is too large gives one line, exit 3, and no file. It imports no
-NumPy: what a process holds before exec counts as the memory of the program that it becomes. The last line is
-`N passed, M failed`.
+Every run has an address space of 1 GiB. A picture that is too large gives one line, exit 3, and no file. The memory includes
+this process's own: what it holds before exec counts as that of the program that it becomes.
 """
 
-import argparse
 import os
 import resource
 import struct
 import subprocess
-import tempfile
 import zlib
-from pathlib import Path
+
+import pytest
 
 ADDRESS_SPACE = 1 << 30
 # The libraries that readers of pictures need take 90 MB, the thread pools and the tables of a reader some more.
@@ -181,15 +177,8 @@ BOMBS = {
 
 
 class Limits:
-    def __init__(self, command, folder):
-        self.command, self.folder = command, folder
-        self.passed = self.failed = self.largest = 0
-
-    def check(self, what, ok, detail=""):
-        self.passed += bool(ok)
-        self.failed += not ok
-        if not ok:
-            print(f"FAIL {what}\n     {detail}", flush=True)
+    def __init__(self, report, command, folder):
+        self.report, self.command, self.folder = report, command, folder
 
     def run(self, *arguments):
         def limit():
@@ -202,79 +191,89 @@ class Limits:
         process.stderr.close()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
-        self.largest = max(self.largest, usage.ru_maxrss * 1024)
         return process.returncode, said, usage.ru_maxrss * 1024
 
     def refused(self, what, arguments, words=""):
         """One line, exit 3, and no file."""
         code, said, peak = self.run(*arguments)
         new = [path.name for path in self.folder.glob("*out*")]
-        self.check(what, code == 3 and said.count("\n") == 1 and words in said and not new and peak < PEAK_BYTES,
+        self.report.check(what, code == 3 and said.count("\n") == 1 and words in said and not new and peak < PEAK_BYTES,
                    f"exit {code}, {peak >> 20} MiB, {new}: {said[:300]}")
 
     def accepted(self, what, *arguments):
         code, said, _ = self.run(*arguments)
-        self.check(what, code == 0, f"exit {code}: {said[:300]}")
+        self.report.check(what, code == 0, f"exit {code}: {said[:300]}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        folder = Path(name)
-        limits = Limits(command, folder)
-        limits.accepted("chart", "chart", "-o", "good.exr", "--width", "320", "--height", "180")
-        limits.accepted("bake", "bake", "clamp", "--format", "cube", "-q", "-o", "good.cube")
-        for bomb, contents in BOMBS.items():
-            (folder / bomb).write_bytes(contents)
-            limits.check(f"{bomb} is small", len(contents) <= 3000, len(contents))
-            limits.refused(f"meter {bomb}", ["meter", bomb], bomb)
-            limits.refused(f"apply {bomb}", ["apply", bomb, "out.png", "--operator", "clamp", "-q"], bomb)
-        for bomb in ("lines.hdr", "lines.png", "strip.tif"):
-            words = f"{bomb}: cannot read: it declares {SIDE} x {SIDE} pixels; expected at most 1000000000"
-            limits.refused(f"{bomb}: the line", ["meter", bomb], words)
-            for what, arguments in {
-                "apply --lut": ["apply", bomb, "out.png", "--lut", "good.cube", "-q"],
-                "apply of a local operator": ["apply", bomb, "out.png", "--operator", "reinhard_local", "-q"],
-                "compare": ["compare", bomb, "clamp", "-o", "out.png", "-q"],
-                "report": ["report", bomb, "--operators", "clamp", "--no-parity", "-o", "out.html", "-q"],
-                "sheet": ["sheet", f"a={bomb}", "-o", "out.png", "-q"],
-            }.items():
-                limits.refused(f"{what} {bomb}", arguments, words)
-            limits.refused(f"{bomb} as a LUT", ["apply", "good.exr", "out.png", "--lut", bomb, "-q"], bomb)
-
-        # The limit counts pixels: 320 x 180 = 57600.
-        for what, arguments in {
-            "apply": ["apply", "good.exr", "kept.png", "--operator", "clamp", "-q"],
-            "apply --lut": ["apply", "good.exr", "kept.png", "--lut", "good.cube", "--input-encoding", "none", "-q"],
-            "meter": ["meter", "good.exr"],
-            "compare": ["compare", "good.exr", "clamp", "-o", "kept.png", "-q"],
-            "report": ["report", "good.exr", "--operators", "clamp", "--no-parity", "-o", "kept.html", "-q"],
-            "sheet": ["sheet", "a=good.exr", "-o", "kept.png", "-q"],
-        }.items():
-            limits.accepted(f"{what} --max-pixels 57600", *arguments, "--max-pixels", "57600")
-            refused = [argument.replace("kept", "out") for argument in arguments]
-            limits.refused(f"{what} --max-pixels 57599", [*refused, "--max-pixels", "57599"], "expected at most 57599 in all")
-        (folder / "shot.0001.exr").write_bytes((folder / "good.exr").read_bytes())
-        code, said, _ = limits.run("apply", "shot.#.exr", "out.#.png", "--frames", "1", "--operator", "clamp", "-q", "--max-pixels", "57599")
-        limits.check("frames", code == 1 and "expected at most 57599" in said, said)
-
-        # What is no bomb is read in 1 GiB.
-        for extension in ("exr", "png", "tif", "dpx", "hdr", "jpg", "tga", "bmp", "sgi", "ppm", "webp", "jp2"):
-            limits.accepted(f"write {extension}", "apply", "good.exr", f"good.{extension}", "--operator", "clamp", "--alpha",
-                            "ignore", "-q", "--in-place")
-            limits.accepted(f"read {extension}", "meter", f"good.{extension}")
-        for extension in ("cube", "csp", "3dl", "spi3d", "clf", "ctf", "icc", "png"):
-            limits.accepted(f"bake {extension}", "bake", "clamp", "--format", "hald" if extension == "png" else extension, "-q",
-                            "-o", f"lut.{extension}")
-            if extension != "icc":
-                limits.accepted(f"LUT {extension}", "apply", "good.exr", "kept.png", "--lut", f"lut.{extension}",
-                                "--input-encoding", "none", "-q")
-    print(f"largest peak of memory: {limits.largest >> 20} MiB")
-    print(f"{limits.passed} passed, {limits.failed} failed")
-    return 1 if limits.failed else 0
+@pytest.fixture(scope="module")
+def folder(folder):
+    """With all bombs."""
+    for name, contents in BOMBS.items():
+        (folder / name).write_bytes(contents)
+    return folder
 
 
-if __name__ == "__main__":
-    raise SystemExit(main())
+@pytest.fixture
+def limits(report, command, folder):
+    made = Limits(report, command, folder)
+    if not (folder / "good.cube").exists():
+        made.accepted("chart", "chart", "-o", "good.exr", "--width", "320", "--height", "180")
+        made.accepted("bake", "bake", "clamp", "--format", "cube", "-q", "-o", "good.cube")
+    return made
+
+
+@pytest.mark.parametrize("bomb", BOMBS)
+def test_bomb(report, limits, bomb):
+    report.check(f"{bomb} is small", len(BOMBS[bomb]) <= 3000, len(BOMBS[bomb]))
+    limits.refused(f"meter {bomb}", ["meter", bomb], bomb)
+    limits.refused(f"apply {bomb}", ["apply", bomb, "out.png", "--operator", "clamp", "-q"], bomb)
+
+
+@pytest.mark.parametrize("bomb", ["lines.hdr", "lines.png", "strip.tif"])
+def test_commands(limits, bomb):
+    words = f"{bomb}: cannot read: it declares {SIDE} x {SIDE} pixels; expected at most 1000000000"
+    limits.refused(f"{bomb}: the line", ["meter", bomb], words)
+    for what, arguments in {
+        "apply --lut": ["apply", bomb, "out.png", "--lut", "good.cube", "-q"],
+        "apply of a local operator": ["apply", bomb, "out.png", "--operator", "reinhard_local", "-q"],
+        "compare": ["compare", bomb, "clamp", "-o", "out.png", "-q"],
+        "report": ["report", bomb, "--operators", "clamp", "--no-parity", "-o", "out.html", "-q"],
+        "sheet": ["sheet", f"a={bomb}", "-o", "out.png", "-q"],
+    }.items():
+        limits.refused(f"{what} {bomb}", arguments, words)
+    limits.refused(f"{bomb} as a LUT", ["apply", "good.exr", "out.png", "--lut", bomb, "-q"], bomb)
+
+
+def test_max_pixels(report, limits):
+    """The limit counts pixels: 320 x 180 = 57600."""
+    for what, arguments in {
+        "apply": ["apply", "good.exr", "kept.png", "--operator", "clamp", "-q"],
+        "apply --lut": ["apply", "good.exr", "kept.png", "--lut", "good.cube", "--input-encoding", "none", "-q"],
+        "meter": ["meter", "good.exr"],
+        "compare": ["compare", "good.exr", "clamp", "-o", "kept.png", "-q"],
+        "report": ["report", "good.exr", "--operators", "clamp", "--no-parity", "-o", "kept.html", "-q"],
+        "sheet": ["sheet", "a=good.exr", "-o", "kept.png", "-q"],
+    }.items():
+        limits.accepted(f"{what} --max-pixels 57600", *arguments, "--max-pixels", "57600")
+        refused = [argument.replace("kept", "out") for argument in arguments]
+        limits.refused(f"{what} --max-pixels 57599", [*refused, "--max-pixels", "57599"], "expected at most 57599 in all")
+    (limits.folder / "shot.0001.exr").write_bytes((limits.folder / "good.exr").read_bytes())
+    code, said, _ = limits.run("apply", "shot.#.exr", "out.#.png", "--frames", "1", "--operator", "clamp", "-q", "--max-pixels", "57599")
+    report.check("frames", code == 1 and "expected at most 57599" in said, said)
+
+
+@pytest.mark.parametrize("extension", ["exr", "png", "tif", "dpx", "hdr", "jpg", "tga", "bmp", "sgi", "ppm", "webp", "jp2"])
+def test_picture(limits, extension):
+    """What is no bomb is read in 1 GiB."""
+    limits.accepted(f"write {extension}", "apply", "good.exr", f"good.{extension}", "--operator", "clamp", "--alpha", "ignore", "-q",
+                    "--in-place")
+    limits.accepted(f"read {extension}", "meter", f"good.{extension}")
+
+
+@pytest.mark.parametrize("extension", ["cube", "csp", "3dl", "spi3d", "clf", "ctf", "icc", "png"])
+def test_lut(limits, extension):
+    limits.accepted(f"bake {extension}", "bake", "clamp", "--format", "hald" if extension == "png" else extension, "-q", "-o",
+                    f"lut.{extension}")
+    if extension != "icc":
+        limits.accepted(f"LUT {extension}", "apply", "good.exr", "kept.png", "--lut", f"lut.{extension}", "--input-encoding", "none",
+                        "-q")

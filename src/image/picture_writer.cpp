@@ -20,6 +20,7 @@
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
+#include "base/system_files.h"
 #include "image/color_tags.h"
 #include "image/compression.h"
 #include "image/format_limits.h"

@@ -18,7 +18,7 @@ struct WrittenPicture {
     bool is_avif = false;
     /// OpenImageIO opened the file itself, so that nothing has told of a full disk.
     bool is_opened_by_name = false;
-    /// Of integers; 0: those of the type.
+    /// Bits of integers; 0: those of the type.
     int bits = 0;
     /// Null: they are not compared.
     const std::vector<float>* pixels = nullptr;

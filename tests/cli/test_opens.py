@@ -2,26 +2,41 @@
 """How often commands open their files, by strace: the file of an operator, a LUT and a config once, a picture at most
 twice. The numbers that it keeps. And a shot whose operator's file disappears while its frames are tone mapped.
 
-    python3 tests/cli/test_opens.py build/release/bin/tonewright
-
 A picture is opened twice where its pixels decide how it is tone mapped: they are measured first, and read again, so that
 memory does not grow with the picture. With --lut, the file's first lines are read for the input that it states, and
 OpenColorIO opens the file for the table. Opening one picture makes several system calls in OpenImageIO, which
-`tonewright info` counts. The last line is `N passed, M failed`.
+`tonewright info` counts.
 """
 
 import os
 import re
 import subprocess
-import sys
-import tempfile
 import time
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, need_program, run, skip  # noqa: E402
+import pytest
+from pictures import ALL, need_program, run, skip
 
 OPENED = re.compile(r'open(?:at)?\([^"]*"(?:[^"]*/)?([^"/]+)", [^)]*\) = \d+')
+
+
+@pytest.fixture(scope="module")
+def folder(command, folder):
+    """With a picture, a shot of it, a .tone file and a LUT."""
+    run(command, "chart", "-o", folder / "scene.hdr", "--width", "640", "--height", "360", "-q")
+    (folder / "mine.tone").write_text(run(command, "list", "hable", "--definition").replace('id = "hable"', 'id = "mine"')
+                                      .replace('view = "Hable"', 'view = "Mine"').replace("Hable (Uncharted 2)", "Mine"))
+    run(command, "bake", "hable", "--format", "cube", "--size", "17", "-o", folder / "film.cube", "-q")
+    for number in range(1, 7):
+        (folder / f"frame.{number:04d}.hdr").hardlink_to(folder / "scene.hdr")
+    return folder
+
+
+@pytest.fixture
+def c(report, command, folder):
+    need_program("strace", "strace")
+    if subprocess.run(["strace", "-o", os.devnull, "true"], capture_output=True, check=False).returncode:
+        skip("this machine does not allow strace to trace processes")
+    return Opens(report, command, folder)
 
 
 class Opens:
@@ -48,7 +63,7 @@ class Opens:
             self.report.check(f"{text}: opens {name}", 1 <= found <= most, f"{found} times; expected 1 to {most}")
 
 
-def check_operators(c):
+def test_operators(c):
     color = b"0.18 0.18 0.18\n"
     for name in ("mine.tone", "film.cube"):
         c.check(f"eval {name}", {name: 1}, color)
@@ -59,7 +74,7 @@ def check_operators(c):
     c.check("shader mine.tone --language glsl -o out.glsl", {"mine.tone": 1})
     c.check("verify mine.tone --quick --no-gpu --shaders none", {"mine.tone": 1})
     c.check("bake film.cube --for unity_urp -o out.png", {"film.cube": 1})
-    if os.environ.get("TONEWRIGHT_TEST_ALL"):  # seconds of fits and of measuring
+    if ALL:  # seconds of fits and of measuring
         c.check("bake mine.tone --for mpv --exact", {"mine.tone": 1})
     c.check("check mine.tone", {"mine.tone": 1})
     c.check("list mine.tone", {"mine.tone": 1})
@@ -70,12 +85,12 @@ def check_operators(c):
     c.check("apply scene.hdr out.png --lut film.cube", {"film.cube": 2})
 
 
-def check_configs(c):
+def test_configs(c):
     run(c.command, "config", "-o", c.folder / "own", "--views", "hable", "--profile", "2.1", "-q")
     c.check("verify --config own/config.ocio hable --no-gpu --quick --shaders none", {"config.ocio": 1})
 
 
-def check_pictures(c):
+def test_pictures(c):
     once = c.count(["info", "scene.hdr"])[0].get("scene.hdr", 0)
     c.report.check("info opens the picture", once > 0, f"{once} times")
     for text in ("apply scene.hdr out.png", "apply scene.hdr out.png --verbose", "apply scene.hdr out.exr --operator local_laplacian",
@@ -86,7 +101,7 @@ def check_pictures(c):
         c.check(text, {"scene.hdr": 2 * once})
 
 
-def check_cache(c):
+def test_cache(c):
     """The second run reads the numbers of the first. A relative XDG_CACHE_HOME is ignored."""
     def kept_by(**variables):
         environment = {name: value for name, value in os.environ.items() if name not in ("HOME", "XDG_CACHE_HOME")}
@@ -105,7 +120,7 @@ def check_cache(c):
         c.report.check(f"cache: the second run uses that of {folder}", second == first, f"{first} {second}")
 
 
-def check_shots(c):
+def test_shots(c):
     """Every frame is that of the file at the start, also after it was replaced, half saved or deleted."""
     count = 30
     for number in range(1, count + 1):
@@ -136,27 +151,3 @@ def check_shots(c):
         c.report.check(f"operator's file {how} in a shot: all frames are the same picture", len(pictures) == 1 and b"" not in pictures)
         c.report.check(f"operator's file {how} in a shot: the picture of the file at the start",
                        wanted.read_bytes() in pictures)
-
-
-def main():
-    need_program("strace", "strace")
-    command = os.path.abspath(sys.argv[1])
-    report = Report()
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        if subprocess.run(["strace", "-o", os.devnull, "true"], capture_output=True, check=False).returncode:
-            skip("this machine does not allow strace to trace processes")
-        run(command, "chart", "-o", folder / "scene.hdr", "--width", "640", "--height", "360", "-q")
-        (folder / "mine.tone").write_text(run(command, "list", "hable", "--definition").replace('id = "hable"', 'id = "mine"')
-                                          .replace('view = "Hable"', 'view = "Mine"').replace("Hable (Uncharted 2)", "Mine"))
-        run(command, "bake", "hable", "--format", "cube", "--size", "17", "-o", folder / "film.cube", "-q")
-        for number in range(1, 7):
-            (folder / f"frame.{number:04d}.hdr").hardlink_to(folder / "scene.hdr")
-        c = Opens(report, command, folder)
-        for check in (check_operators, check_configs, check_pictures, check_cache, check_shots):
-            check(c)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,22 +2,17 @@
 """Reading LUTs: what is about is taken as it is, what is malformed is refused with file, line and reason; and
 `eval --lut`, `apply --lut` do what the numbers in the file say.
 
-    python3 tests/cli/test_lut_files.py build/release/bin/tonewright
-
 Every file is written here, from the formats' specifications: small tables, in as many formats as are read. The corpus of
 malformed ones is made of them by a list of mutations, the same on every run. Each is given to `tonewright eval --lut` with
 1 GB of address space, 20 s and 300 MB of memory: no crash, exit status 3, one line with the file's name and a reason, and
-the line's number where the file has lines. What comes out of the good ones is compared with NumPy's interpolation of the same numbers. The last line
-is `N passed, M failed`.
+the line's number where the file has lines. What comes out of the good ones is compared with NumPy's interpolation of the same numbers.
 """
 
-import argparse
 import os
 import re
 import resource
 import struct
 import subprocess
-import sys
 import tempfile
 import threading
 import zlib
@@ -25,12 +20,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, read_exr, run, share_of, stack, unstack, write_exr  # noqa: E402
-
-from lut_encodings import acescct_encode  # noqa: E402  (python_check/, which pictures.py puts on the path)
-from lut_tables import linear, tetrahedral, trilinear  # noqa: E402
+import pytest
+from lut_encodings import acescct_encode
+from lut_tables import linear, tetrahedral, trilinear
+from pictures import read_exr, run, share_of, skip, stack, unstack, write_exr
 
 GIGABYTE = 1 << 30
 # Resident: the program with its libraries has some 60 MB; what files declare here would be gigabytes.
@@ -498,12 +491,12 @@ def refuse(command, folder, index, case):
     return f"{name}, {what}: {peak / 2 ** 20:.0f} MB" if peak > LARGEST else None
 
 
-def check_corpus(report, command, folder):
-    corpus = list(text_corpus()) + list(foreign_corpus()) + list(binary_corpus(command, folder))
+def test_corpus(report, command, scratch):
+    corpus = list(text_corpus()) + list(foreign_corpus()) + list(binary_corpus(command, scratch))
     report.check(f"{len(corpus)} malformed files", len(corpus) >= 200, len(corpus))
     cases = share_of(corpus, 3)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        faults = list(pool.map(lambda c: refuse(command, folder, *c), enumerate(cases)))
+        faults = list(pool.map(lambda c: refuse(command, scratch, *c), enumerate(cases)))
     kinds = {}
     for (name, _, _), fault in zip(cases, faults):
         kinds.setdefault(name, []).append(fault)
@@ -512,7 +505,7 @@ def check_corpus(report, command, folder):
         report.check(f"{name}: {len(found)} malformed files are refused, each in one line", not bad, "\n     ".join(bad))
 
 
-def check_messages(report, command, folder):
+def test_messages(report, command, scratch):
     """Each names the line at fault, what is wrong there and what is expected."""
     for name, old, new, message in (
             ("adobe.cube", f"LUT_3D_SIZE {SIZE}", "LUT_3D_SIZE", "line 3: LUT_3D_SIZE is missing; expected a whole number in [2, 129]"),
@@ -535,7 +528,7 @@ def check_messages(report, command, folder):
             ("curve.clf", "</LUT1D>", "</LUT3D>", "line 15: </LUT3D> closes no element; expected </LUT1D>"),
             ("curve.clf", "</ProcessList>\n", "", "line 16: the file ends; expected </ProcessList>"),
             ("curve.clf", '<?xml version="1.0" encoding="UTF-8"?>', "2 0 0", "line 1: 2 0 0; expected XML, which begins with <")):
-        path = folder / name
+        path = scratch / name
         if old not in GOOD[name]:
             raise ValueError(f"{name}: {old}")
         path.write_text(GOOD[name].replace(old, new, 1))
@@ -543,12 +536,12 @@ def check_messages(report, command, folder):
         report.check(f"{name}: {message}", err == f"tonewright: read: {path}: {message}\n", err)
 
 
-def check_noise(report, command, folder):
+def test_noise(report, command, scratch):
     """Bytes changed by chance: the file may still be one. No crash, no great memory, one line or a result."""
     random = np.random.default_rng(11)
-    run(command, "bake", "hable", "--format", "icc", "--size", 17, "--nodes", "sampled", "-o", folder / "good.icc")
+    run(command, "bake", "hable", "--format", "icc", "--size", 17, "--nodes", "sampled", "-o", scratch / "good.icc")
     files = {name: text.encode() for name, text in GOOD.items()} | {
-        "cube.raw": RAW, "link.icc": (folder / "good.icc").read_bytes(), "hald.png": png(HALD_PIXELS)}
+        "cube.raw": RAW, "link.icc": (scratch / "good.icc").read_bytes(), "hald.png": png(HALD_PIXELS)}
     jobs = []
     for name, good in files.items():
         for _ in range(2 if name == "hald.png" else 8):
@@ -559,7 +552,7 @@ def check_noise(report, command, folder):
 
     def one(job):
         index, (name, contents) = job
-        path = folder / f"noise{index}_{name}"
+        path = scratch / f"noise{index}_{name}"
         path.write_bytes(contents)
         status, out, err, peak = peak_of([command, "eval", "--lut", path], "0.1 0.2 0.3\n")
         path.unlink()
@@ -571,7 +564,7 @@ def check_noise(report, command, folder):
     report.check(f"{len(jobs)} files with six bytes changed by chance", not bad, "\n     ".join(bad))
 
 
-def check_paths(report, command, folder):
+def test_paths(report, command, folder):
     """Paths that are not files, and files that are too large."""
     (folder / "folder.cube").mkdir()
     os.mkfifo(folder / "pipe.cube")
@@ -607,7 +600,23 @@ def evaluate_lut(command, path, colors, *arguments):
 FLOAT32 = 2e-6
 
 
-def check_eval(report, command, folder):
+@pytest.fixture(scope="module")
+def folder(command, folder):
+    """With all of GOOD, LUTs without lines, and a picture."""
+    for name, text in GOOD.items():
+        (folder / name).write_text(text)
+    (folder / "cube.raw").write_bytes(RAW)
+    (folder / "hald.png").write_bytes(png(HALD_PIXELS))
+    (folder / "strip.png").write_bytes(png(STRIP_PIXELS))
+    write_exr(folder / "hald.exr", unstack(HALD_PIXELS))
+    write_exr(folder / "in.exr", unstack(COLORS.reshape(8, 8, 3)))
+    for name, options in (("link2.icc", ["--format", "icc", "--icc-version", 2]), ("link4.icc", ["--format", "icc", "--icc-version", 4]),
+                          ("link.raw", ["--format", "raw", "--3d"])):
+        run(command, "bake", "agx_sobotka", *options, "--size", 17, "--nodes", "sampled", "--input-encoding", "log2", "-o", folder / name)
+    return folder
+
+
+def test_eval(report, command, folder):
     own = GOOD["cube.clf"].replace("tetrahedral", "trilinear")
     (folder / "own.clf").write_text(own)
     report.compare("eval --lut: a CLF's own interpolation", evaluate_lut(command, folder / "own.clf", COLORS),
@@ -615,17 +624,12 @@ def check_eval(report, command, folder):
     report.compare("eval --lut: another than a CLF's own",
                    evaluate_lut(command, folder / "own.clf", COLORS, "--interpolation", "tetrahedral"),
                    interpolate(CUBE, COLORS), FLOAT32)
-    for name, text in GOOD.items():
+    for name in GOOD:
         path = folder / name
-        path.write_text(text)
         for arguments in ([], ["--interpolation", "trilinear"]):
             # A prelut is resampled to 65536 steps.
             report.compare(f"eval --lut {name} {' '.join(arguments)}", evaluate_lut(command, path, COLORS, *arguments),
                            expected_of(name, COLORS, bool(arguments)), FLOAT32)
-    (folder / "cube.raw").write_bytes(RAW)
-    (folder / "hald.png").write_bytes(png(HALD_PIXELS))
-    (folder / "strip.png").write_bytes(png(STRIP_PIXELS))
-    write_exr(folder / "hald.exr", unstack(HALD_PIXELS))
     for name, cube, depth in (("cube.raw", CUBE, 0), ("hald.png", HALD, 65535), ("strip.png", CUBE, 65535), ("hald.exr", HALD, 0)):
         rounded = np.round(cube * depth) / depth if depth else cube.astype(np.float32).astype(float)
         for arguments in ([], ["--interpolation", "trilinear"]):
@@ -634,26 +638,21 @@ def check_eval(report, command, folder):
                            evaluate_lut(command, folder / name, COLORS, *arguments),
                            interpolate(rounded, COLORS, bool(arguments)), 1e-7)
     for version in (2, 4):
-        path = folder / "link.icc"
-        run(command, "bake", "agx_sobotka", "--format", "icc", "--icc-version", version, "--size", 17, "--nodes", "sampled",
-            "--input-encoding", "log2", "-o", path)
-        run(command, "bake", "agx_sobotka", "--format", "raw", "--3d", "--size", 17, "--nodes", "sampled", "--input-encoding",
-            "log2", "-o", folder / "link.raw")
         # LittleCMS works in 16 bits: half a step of the input, twice as steep here, and half of the output.
         nodes = np.round(np.clip(np.fromfile(folder / "link.raw", "<f4").reshape(17, 17, 17, 3), 0, 1) * 65535.0) / 65535
-        report.compare(f"eval --lut of an ICC device link, version {version}", evaluate_lut(command, path, COLORS),
+        report.compare(f"eval --lut of an ICC device link, version {version}", evaluate_lut(command, folder / f"link{version}.icc", COLORS),
                        interpolate(nodes, COLORS), 2.5e-5)
     special = np.array([[np.nan, 0.5, 0.5], [np.inf, 0.5, 0.5], [-np.inf, 0.5, 0.5], [-1, 2, 0.5]])
     clamped = np.array([[0, 0.5, 0.5], [1, 0.5, 0.5], [0, 0.5, 0.5], [0, 1, 0.5]])
-    for name, bound in (("adobe.cube", FLOAT32), ("cube.raw", 1e-7), ("link.icc", 1e-7)):
+    for name, bound in (("adobe.cube", FLOAT32), ("cube.raw", 1e-7), ("link4.icc", 1e-7)):
         report.compare(f"eval --lut {name}: NaN and what is beyond 0 and 1", evaluate_lut(command, folder / name, special),
                        evaluate_lut(command, folder / name, clamped), bound)
 
 
-def check_encoding(report, command, folder):
+@pytest.mark.share(2)
+def test_encoding(report, command, folder):
     """--input-encoding: light of --input, in the encoding's own primaries."""
     path = folder / "adobe.cube"
-    path.write_text(GOOD["adobe.cube"])
     light = np.random.default_rng(6).uniform(0, 4, (64, 3)).astype(np.float32).astype(float)
     code = acescct_encode(light)
     report.compare("eval --lut --input-encoding acescct --input lin_ap1",
@@ -669,13 +668,11 @@ def check_encoding(report, command, folder):
                    interpolate(CUBE, acescct_encode(light @ to_ap1.T)), 1e-4)
 
 
-def check_apply(report, command, folder):
+def test_apply(report, command, folder):
     """Pictures: pixel types, gray, alpha, and the same as eval."""
     path = folder / "adobe.cube"
-    path.write_text(GOOD["adobe.cube"])
     colors = COLORS.reshape(8, 8, 3)
-    write_exr(folder / "in.exr", unstack(colors))
-    for name in ("adobe.cube", "cube.raw", "hald.png", "both.lut", "link.icc"):
+    for name in ("adobe.cube", "cube.raw", "hald.png", "both.lut", "link4.icc"):
         run(command, "apply", folder / "in.exr", folder / "out.exr", "--lut", folder / name, "-d", "float",
             "--input-encoding", "none")
         report.compare(f"apply --lut {name}: as eval", stack(read_exr(folder / "out.exr")).reshape(-1, 3),
@@ -698,7 +695,8 @@ def check_apply(report, command, folder):
     report.check("apply --lut: alpha stays", np.array_equal(out["A"], alpha.astype(np.float32)))
 
 
-def check_stated(report, command, folder):
+@pytest.mark.share(2)
+def test_stated(report, command, folder):
     """apply --lut without --input-encoding: what the header of a file of `bake` says; else a warning."""
     light = np.random.default_rng(8).uniform(0, 4, (8, 8, 3)).astype(np.float32)
     write_exr(folder / "light.exr", unstack(light))
@@ -749,7 +747,6 @@ def check_stated(report, command, folder):
                      and "expects DaVinci Intermediate" in done.stderr, done.stderr)
     done, _ = applied(folder / "stated.cube", "--input-encoding", "logc3", "--strict")
     report.check("apply --lut, the header says otherwise, --strict: exit 1", done.returncode == 1, done.stderr)
-    (folder / "adobe.cube").write_text(GOOD["adobe.cube"])
     done, _ = applied(folder / "adobe.cube")
     report.check("apply --lut of a file that says nothing: one warning", done.returncode == 0
                  and len(done.stderr.splitlines()) == 1 and "warning: " in done.stderr and "adobe.cube" in done.stderr,
@@ -779,7 +776,8 @@ def red_of_icc(chunk):
     return np.zeros(3)
 
 
-def check_output(report, command, folder):
+@pytest.mark.share(2)
+def test_output(report, command, folder):
     """apply --lut: the picture says what its colors are, where the LUT's header does."""
     light = np.random.default_rng(9).uniform(0, 2, (8, 8, 3)).astype(np.float32)
     write_exr(folder / "light.exr", unstack(light))
@@ -809,13 +807,13 @@ def check_output(report, command, folder):
     _, said = applied("display_p3.cube", "out.exr")
     report.check("apply --lut: code values in an EXR: one warning", said.count("\n") == 1
                  and "a LUT that is baked with --display linear" in said, said)
-    (folder / "adobe.cube").write_text(GOOD["adobe.cube"])
     png, _ = applied("adobe.cube", "out.png")
     report.check("apply --lut of a file that says nothing: no tag", not any(
         chunk_of(png, name) for name in (b"iCCP", b"sRGB", b"cICP", b"gAMA")))
 
 
-def check_wild(report, command, folder):
+@pytest.mark.share(2)
+def test_wild(report, command, folder):
     """Spellings that are about mean the same."""
     cube = GOOD["adobe.cube"]
     body = rows(CUBE)
@@ -851,7 +849,8 @@ def check_wild(report, command, folder):
         report.compare(f"a byte order mark: {name}", evaluate_lut(command, path, COLORS), expected_of(name, COLORS), FLOAT32)
 
 
-def check_xml(report, command, folder):
+@pytest.mark.share(2)
+def test_xml(report, command, folder):
     """Names without regard to case, all that Arrays may stand in, and free text."""
     cube, curve = GOOD["cube.clf"], GOOD["curve.clf"]
     truth = interpolate(CUBE, COLORS)
@@ -891,20 +890,20 @@ def check_xml(report, command, folder):
         report.compare(f".ctf: {what}", evaluate_lut(command, path, shown), inside, 1e-4)
 
 
-def check_early_end(report, command, folder):
+@pytest.mark.share(2)
+def test_early_end(report, command, folder):
     """A file that has less than its size says: those of Linux's sysfs have 4096 bytes, and hold a line."""
     short = [path for path in ("/sys/kernel/mm/transparent_hugepage/enabled", "/sys/kernel/notes", "/sys/devices/system/cpu/online",
                                "/sys/devices/system/cpu/possible")
              if os.access(path, os.R_OK) and os.path.getsize(path) > len(Path(path).read_bytes())]
     if not short:
-        print("skip a file that ends early: there is none in /sys")
-        return
+        skip("a file that ends early: there is none in /sys")
     (folder / "early.cube").symlink_to(short[0])
     status, out, err, _ = peak_of([command, "eval", "--lut", folder / "early.cube"], "")
     report.check("a file that ends early", status == 3 and not out and err.count("\n") == 1 and "ends early" in err, err)
 
 
-def check_usage(report, command, folder):
+def test_usage(report, command, folder):
     path = folder / "adobe.cube"
     for arguments, words in ((["--interpolation", "cubic"], "interpolation is cubic; auto, tetrahedral or trilinear"),
                              (["--input-encoding", "acescc"], "acescc; did you mean acescct?"),
@@ -923,30 +922,7 @@ def check_usage(report, command, folder):
     for arguments, words in ((["eval", "hable", "--lut", path], "OPERATOR and --lut are given; expected one of them"),
                              (["eval"], "OPERATOR is missing; --lut FILE"),
                              (["eval", "hable", "--interpolation", "trilinear"], "--interpolation is trilinear; expected --lut FILE with it"),
-                             (["eval", "--lut", folder / "link.icc", "--interpolation", "trilinear"], "tetrahedral; link.icc")):
+                             (["eval", "--lut", folder / "link4.icc", "--interpolation", "trilinear"], "tetrahedral; link4.icc")):
         status, out, err, _ = peak_of([command, *arguments], "")
         report.check(f"{' '.join(Path(a).name for a in map(str, arguments))}: {words}",
                      status == 2 and not out and err.count("\n") == 1 and all(w in err for w in words.split("; ")), err)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        folder = Path(name)
-        check_eval(report, command, folder)
-        check_apply(report, command, folder)
-        for check in share_of([check_encoding, check_stated, check_output, check_wild, check_xml, check_early_end], 2):
-            check(report, command, folder)
-        check_usage(report, command, folder)
-        check_paths(report, command, folder)
-        check_messages(report, command, folder)
-        check_corpus(report, command, folder)
-        check_noise(report, command, folder)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

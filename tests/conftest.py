@@ -11,6 +11,7 @@ all tests of a run are skipped, the exit status is 77, so that ctest shows the r
 import importlib
 import os
 import shutil
+import signal
 import sys
 from pathlib import Path
 
@@ -37,6 +38,7 @@ def pytest_configure(config):
     os.environ.setdefault("LC_ALL", "C.UTF-8")
     # Configurations of the user must change no result.
     os.environ.pop("OCIO", None)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it, and so would their commands
     config.checks = Report()
     if folder := config.getoption("--screenshots"):
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared by the tests of sequences: small shots, and what lies in their folders."""
 
+import contextlib
 import os
 import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import write_exr  # noqa: E402
+from pictures import write_exr
 
 # A config as a studio has one, with displays that Tonewright knows.
 CONFIG = """ocio_profile_version: 2.1
@@ -68,3 +65,16 @@ def apply(command, *arguments, folder, environment=None):
     done = subprocess.run([str(command), "apply", *map(str, arguments)], cwd=folder, capture_output=True, text=True,
                           check=False, env=environment)
     return done.returncode, (done.stdout + done.stderr).splitlines()
+
+
+@contextlib.contextmanager
+def small_disk(folder, size):
+    """A file system of its own at a folder; None where none can be made."""
+    folder.mkdir()
+    done = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", folder], capture_output=True, check=False,
+                          text=True)
+    try:
+        yield None if done.returncode else folder
+    finally:
+        if done.returncode == 0:
+            subprocess.run(["umount", folder], check=True)

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The examples of docs/farm.md as they stand there: a Slurm array of 4 tasks and GNU parallel over 40 frames.
 
-    python3 tests/cli/test_farm.py build/release/bin/tonewright
-
-Slurm runs on this machine's loopback, with files, ports and a key of its own, and is gone at the end. The last line is
-`N passed, M failed`; the exit code is 77 where one of the two cannot be run, and the output says why.
+Slurm runs on this machine's loopback, with files, ports and a key of its own, and is gone at the end.
 """
 
-import argparse
 import contextlib
 import os
 import re
@@ -20,11 +16,9 @@ import tempfile
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from shots import apply, contents, leftovers, make_shot  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import PROJECT, SKIPPED, Report  # noqa: E402
+import pytest
+from pictures import PROJECT, skip
+from shots import apply, contents, leftovers, make_shot
 
 FRAMES = range(1001, 1041)
 DAEMONS = {"munged": "munge", "slurmctld": "slurmctld", "slurmd": "slurmd"}
@@ -35,6 +29,28 @@ def example(word):
     """The block of code that has this word."""
     blocks = re.findall(r"^```\w*\n(.*?)^```$", (PROJECT / "docs" / "farm.md").read_text(), re.S | re.M)
     return next(block for block in blocks if word in block)
+
+
+@pytest.fixture(scope="module")
+def one_process(command, folder):
+    """(options of the example, exit code, lines, files) of one process that makes all frames."""
+    make_shot(folder, FRAMES, name="shot.{:04d}.exr")
+    options = next(part for part in example("#SBATCH").split("out.%04d.png ")[1:]).split("\\")[0].split()
+    code, lines = apply(command, "shot.%04d.exr", "out.%04d.png", *options, "--frames", "1001-1040", folder=folder)
+    return options, code, lines, contents(folder)
+
+
+@pytest.fixture
+def truth(folder, one_process):
+    """Files of all frames, which the folder does not have yet."""
+    for path in folder.glob("out.*"):
+        path.unlink()
+    return one_process[-1]
+
+
+def test_one_process(report, one_process):
+    options, code, lines, made = one_process
+    report.check(f"one process, {' '.join(options)}", code == 0 and not lines and len(made) == 40, lines)
 
 
 def free_ports(count):
@@ -144,87 +160,54 @@ def stop(process):
         process.wait()
 
 
-def check_slurm(command, report, shot, truth):
-    """False where it cannot be run."""
-    reason = why_no_slurm()
-    if reason:
-        print(f"skipped: Slurm ({reason})")
-        return False
+def test_slurm(report, command, folder, truth):
+    if reason := why_no_slurm():
+        skip(f"Slurm ({reason})")
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # and the daemons end, too
+    # A short path: those of sockets have a limit.
     with tempfile.TemporaryDirectory(prefix="tonewright-slurm-") as name, slurm(Path(name)) as (environment, problem):
         if problem:
-            print(f"skipped: Slurm ({problem})")
-            return False
+            skip(f"Slurm ({problem})")
         environment["PATH"] = f"{command.parent}:{environment['PATH']}"
-        (shot / "tonewright.sh").write_text(example("#SBATCH"))
+        (folder / "tonewright.sh").write_text(example("#SBATCH"))
 
         def run_array(*options):
             """Lines of the tasks' logs; None: they did not end."""
-            for log in shot.glob("tonewright-*.log"):
+            for log in folder.glob("tonewright-*.log"):
                 log.unlink()
-            done = subprocess.run(["sbatch", "--parsable", *options, "tonewright.sh"], cwd=shot, env=environment,
+            done = subprocess.run(["sbatch", "--parsable", *options, "tonewright.sh"], cwd=folder, env=environment,
                                   capture_output=True, text=True, check=False)
             if not report.check(f"sbatch {' '.join(options)} tonewright.sh", done.returncode == 0, done.stderr):
                 return None
             ended = wait_until(lambda: not subprocess.run(["squeue", "-h"], env=environment, capture_output=True,
                                                           check=True).stdout, 120)
-            return [line for log in sorted(shot.glob("tonewright-*.log")) for line in log.read_text().splitlines()] \
+            return [line for log in sorted(folder.glob("tonewright-*.log")) for line in log.read_text().splitlines()] \
                 if ended else None
 
         lines = run_array()
         report.check("a Slurm array of 4 tasks over 40 frames: the bytes of one process",
-                     lines == [] and contents(shot) == truth and not leftovers(shot), lines)
+                     lines == [] and contents(folder) == truth and not leftovers(folder), lines)
         for number in (1005, 1006, 1007, 1013, 1040):
-            (shot / f"out.{number}.png").unlink()
+            (folder / f"out.{number}.png").unlink()
         lines = run_array()
         summaries = [line.rpartition("apply: ")[2] for line in lines or []]
-        report.check("the same sbatch again makes what is missing", contents(shot) == truth and summaries == [
+        report.check("the same sbatch again makes what is missing", contents(folder) == truth and summaries == [
             "10 frames: 2 written, 8 skipped", *["10 frames: 1 written, 9 skipped"] * 3], lines)
-        for path in shot.glob("out.*"):
+        for path in folder.glob("out.*"):
             path.unlink()
         few = {f"out.{number}.png": truth[f"out.{number}.png"] for number in (1001, 1002)}
-        (shot / "tonewright.sh").write_text(example("#SBATCH").replace("last=1040", "last=1002"))
+        (folder / "tonewright.sh").write_text(example("#SBATCH").replace("last=1040", "last=1002"))
         lines = run_array()
-        report.check("4 tasks over 2 frames", lines == [] and contents(shot) == few, lines)
-    return True
+        report.check("4 tasks over 2 frames", lines == [] and contents(folder) == few, lines)
 
 
-def check_parallel(command, report, shot, truth):
-    """False where it cannot be run."""
+def test_parallel(report, command, folder, truth):
     version = subprocess.run(["parallel", "--version"], capture_output=True, text=True, check=False).stdout \
         if shutil.which("parallel") else ""
     if not version.startswith("GNU parallel"):
-        print("skipped: GNU parallel (Debian: parallel)")
-        return False
-    environment = {**os.environ, "PATH": f"{command.parent}:{os.environ['PATH']}", "HOME": str(shot)}
-    done = subprocess.run(["bash", "-c", example("| parallel")], cwd=shot, env=environment, capture_output=True, text=True,
+        skip("GNU parallel (Debian: parallel)")
+    environment = {**os.environ, "PATH": f"{command.parent}:{os.environ['PATH']}", "HOME": str(folder)}
+    done = subprocess.run(["bash", "-c", example("| parallel")], cwd=folder, env=environment, capture_output=True, text=True,
                           check=False)
     report.check("GNU parallel, 4 processes over 40 frames: the bytes of one process", done.returncode == 0
-                 and contents(shot) == truth and len((shot / "parallel.log").read_text().splitlines()) == 5, done.stderr)
-    return True
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # and the daemons end, too
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        shot = Path(name)
-        make_shot(shot, FRAMES, name="shot.{:04d}.exr")
-        options = next(part for part in example("#SBATCH").split("out.%04d.png ")[1:]).split("\\")[0].split()
-        code, lines = apply(command, "shot.%04d.exr", "out.%04d.png", *options, "--frames", "1001-1040", folder=shot)
-        truth = contents(shot)
-        report.check(f"one process, {' '.join(options)}", code == 0 and not lines and len(truth) == 40, lines)
-        ran = []
-        for check in (check_slurm, check_parallel):
-            for path in shot.glob("out.*"):
-                path.unlink()
-            ran.append(check(command, report, shot, truth))
-    if report.finish():
-        return 1
-    return 0 if all(ran) else SKIPPED
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+                 and contents(folder) == truth and len((folder / "parallel.log").read_text().splitlines()) == 5, done.stderr)

@@ -1,27 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Folders that are read-only, full devices, and pipes whose writer is slow: exit code 3, one line, no new file, and no wait.
 
-    python3 tests/cli/test_file_errors.py build/release/bin/tonewright
-
-test_sequences.py has full and read-only disks for frames, and inputs that vanish between frames. The last line is
-`N passed, M failed`.
+test_sequences.py has full and read-only disks for frames, and inputs that vanish between frames.
 """
 
-import argparse
 import contextlib
 import os
 import subprocess
-import sys
-import tempfile
 import threading
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from shots import CONFIG, make_shot  # noqa: E402
-from test_sequences import small_disk  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
+import pytest
+from pictures import skip
+from shots import CONFIG, make_shot
+from shots import small_disk
 
 OK, FILE = 0, 3
 RGB = ["--size", "17", "--input", "lin_rec709"]  # of which a LUT of hable has no warning
@@ -63,12 +54,26 @@ def read_only(folder, files):
             place.chmod(0o755)
 
 
-def check_read_only(report, command, folder):
+@pytest.fixture(scope="module")
+def folder(folder):
+    """With a picture, and a file of colors."""
+    make_shot(folder, [1])
+    (folder / "colors").write_text("1 1 1\n")
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def no_new_files(folder):
+    yield
+    new = {path.name for path in folder.iterdir()} - {"in.0001.exr", "colors", "shut", "cache"}
+    assert not new, f"no new files: {new}"
+
+
+def test_read_only(report, command, folder):
     files = {"studio.ocio": CONFIG.encode(), "old.cube": b"old", "old.png": b"old", "old.glsl": b"old"}
     with read_only(folder / "shut", files) as shut:
         if not shut:
-            print("skipped: read-only folders (mounting a tmpfs needs root)")
-            return
+            skip("read-only folders (mounting a tmpfs needs root)")
         for arguments in (["apply", "in.0001.exr", "shut/old.png", "--operator", "hable"],
                           ["chart", "-o", "shut/new.exr"],
                           ["compare", "in.0001.exr", "hable", "-o", "shut/old.png"],
@@ -87,7 +92,7 @@ def check_read_only(report, command, folder):
         report.check("read-only: the old files", files == {path.name: path.read_bytes() for path in shut.iterdir()})
 
 
-def check_full(report, command, folder):
+def test_full(report, command, folder):
     """Standard output and output files that are full devices."""
     with open("/dev/full", "wb") as full:
         for arguments in (["list"], ["list", "--json"], ["eval", "hable"], ["meter", "in.0001.exr"],
@@ -124,7 +129,7 @@ def slow_pipe(path, contents, pause):
     path.unlink()
 
 
-def check_slow_pipes(report, command, folder):
+def test_slow_pipes(report, command, folder):
     for name, arguments in (("in.exr", ["apply", "in.exr", "out.png", "--operator", "hable"]), ("in.exr", ["meter", "in.exr"]),
                             ("list", ["apply", "@list", "-o", "new", "--operator", "hable"]),
                             ("in.cube", ["eval", "--lut", "in.cube"]), ("in.tone", ["eval", "in.tone"]),
@@ -137,23 +142,3 @@ def check_slow_pipes(report, command, folder):
                               timeout=SECONDS)
         report.check("eval: a slow pipe as standard input", done.returncode == OK
                      and done.stdout == b"0.5 0.5 0.5\n0.75 0.75 0.75\n" and not done.stderr, done)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        folder = Path(name)
-        make_shot(folder, [1])
-        (folder / "colors").write_text("1 1 1\n")
-        for check in (check_read_only, check_full, check_slow_pipes):
-            check(report, command, folder)
-        new = {path.name for path in folder.iterdir()} - {"in.0001.exr", "colors", "shut", "cache"}
-        report.check("no new files", not new, new)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -1,29 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Links, private files, access lists, windows and names that an attacker or an accident can make.
+"""Links, private files, access lists, windows and names that an attacker or an accident can make."""
 
-    python3 tests/cli/test_hostile_files.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import json
 import os
 import stat
 import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from shots import make_shot  # noqa: E402
+import numpy as np
+import pytest
+from shots import make_shot
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
 
 OK, FAILED, USAGE, FILE = 0, 1, 2, 3
 CLAMP = ["--operator", "clamp"]
 BAKE = ["bake", "hable", "--format", "cube", "--input-encoding", "log2", "--size", "5", "-q", "-o"]
+
+
+@pytest.fixture
+def folder(scratch):
+    """With a shot of two frames."""
+    make_shot(scratch, [1, 2])
+    return scratch
 
 
 def run(command, folder, *arguments):
@@ -33,7 +30,7 @@ def run(command, folder, *arguments):
     return done.returncode, done.stdout, done.stderr.decode(errors="replace").splitlines()
 
 
-def check_outputs(report, command, folder):
+def test_outputs(report, command, folder):
     """Two outputs that are one file are refused before anything is written."""
     out = folder / "o"
     out.mkdir()
@@ -57,7 +54,7 @@ def check_outputs(report, command, folder):
     report.check("compare: the sheet is one of the pictures", code == USAGE and len(lines) == 1, lines)
 
 
-def check_access(report, command, folder):
+def test_access(report, command, folder):
     name = folder / "o.cube"
     name.write_text("old")
     name.chmod(0o4755)
@@ -76,20 +73,15 @@ def check_access(report, command, folder):
         print("skipped: owner and group (needs root)")
 
 
-def check_windows(report, command, folder):
-    try:
-        import numpy
-        import OpenImageIO as oiio
-    except ImportError as error:
-        print(f"skipped: data windows ({error})")
-        return
+def test_windows(report, command, folder):
+    oiio = pytest.importorskip("OpenImageIO", reason="data windows (OpenImageIO's Python module is missing; Debian: python3-openimageio)")
     for at, share in ((100, "all"), (44, "43.8 %"), (42, "")):  # 8 x 8 pixels: of 6 x 6 in the window, 1 - 36/64 is lost
         spec = oiio.ImageSpec(8, 8, 3, oiio.HALF)
         spec.x = spec.y = at
         spec.full_width = spec.full_height = 50
         out = oiio.ImageOutput.create(str(folder / "w.exr"))
         out.open(str(folder / "w.exr"), spec)
-        out.write_image(numpy.full((8, 8, 3), .5, numpy.float32))
+        out.write_image(np.full((8, 8, 3), .5, np.float32))
         out.close()
         for name, expected in (("w.png", share), ("w2.exr", "")):
             code, _, lines = run(command, folder, "apply", "w.exr", name, *CLAMP)
@@ -98,7 +90,7 @@ def check_windows(report, command, folder):
                          and all(expected in line for line in said), lines)
 
 
-def check_names(report, command, folder):
+def test_names(report, command, folder):
     name = os.fsencode(folder) + b"/a\xe9.exr"
     os.link(os.fsencode(folder / "in.0001.exr"), name)
     code, out, lines = run(command, folder, "meter", name, "--json")
@@ -106,7 +98,7 @@ def check_names(report, command, folder):
     os.unlink(name)
 
 
-def check_frames(report, command, folder):
+def test_frames(report, command, folder):
     code, _, lines = run(command, folder, "apply", "none.#######.exr", "x.#######.png", "--frames", "1-1000000", *CLAMP)
     report.check("a million missing frames", code == FAILED and len(lines) < 60 and "1000000 failed: 1-1000000" in lines[-1], lines[-2:])
     run(command, folder, "apply", "in.####.exr", "f.####.png", "--frames", "1-2", *CLAMP)
@@ -115,20 +107,3 @@ def check_frames(report, command, folder):
     code, _, lines = run(command, folder, "apply", "in.####.exr", "f.####.png", "--frames", "1-2", "--skip-existing", *CLAMP)
     report.check("a PNG without its end is made again", code == OK and (folder / "f.0001.png").read_bytes() == whole
                  and "1 skipped" in lines[-1], lines)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    for check in (check_outputs, check_access, check_windows, check_names, check_frames):
-        with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-            folder = Path(name)
-            make_shot(folder, [1, 2])
-            check(report, command, folder)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

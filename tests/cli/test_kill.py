@@ -1,31 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands that SIGKILL, SIGINT and SIGTERM end at random moments: no partial file, and the next run is as any other.
 
-    python3 tests/cli/test_kill.py build/release/bin/tonewright
-
 `apply --frames` is killed 45 times (`./run test --all`: 100), and continued with --skip-existing. Every other command of JOBS is
 ended once with each signal (`./run test --all`: 10 times), and then runs again. After each signal, every final name has the bytes
 of an unbroken run, or the old ones; SIGINT and SIGTERM leave no temporary file. At the end, all files have the bytes of an
-unbroken run, and no temporary file is left. The last line is `N passed, M failed`.
+unbroken run, and no temporary file is left.
 """
 
-import argparse
 import os
 import random
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from shots import CONFIG, apply, contents, leftovers, make_shot  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import ALL, Report  # noqa: E402
+import pytest
+from pictures import ALL
+from shots import CONFIG, apply, contents, leftovers, make_shot
 
 KILLS = {"exr": 34, "png": 33, "tif": 33} if ALL else {"exr": 15, "png": 15, "tif": 15}  # OpenImageIO writes TIFF by itself
 FRAMES = 30
@@ -57,14 +48,15 @@ def finished_files(folder):
     return sum(1 for _ in folder.glob("out.*"))
 
 
-def kill_runs(command, report, folder, extension):
+@pytest.mark.parametrize("extension", KILLS)
+def test_frames(report, command, scratch, extension):
     """Files of an extension; their part of the kills."""
     rng = random.Random(f"kill {extension}")
-    make_shot(folder, range(1, FRAMES + 1), width=96, height=64)
+    make_shot(scratch, range(1, FRAMES + 1), width=96, height=64)
     arguments = ["in.#.exr", f"out.#.{extension}", "--operator", "hable", "--display", "linear", "--frames", f"1-{FRAMES}", "--jobs", "3"]
 
-    code, lines = apply(command, *arguments, folder=folder)
-    truth = contents(folder)
+    code, lines = apply(command, *arguments, folder=scratch)
+    truth = contents(scratch)
     report.check(f".{extension}: an unbroken run", code == 0 and not lines and len(truth) == FRAMES, lines)
 
     kills = partly = in_writing = whole = 0
@@ -74,34 +66,34 @@ def kill_runs(command, report, folder, extension):
         if len(made) == FRAMES:  # from the beginning again
             whole += 1
             for name in made:
-                (folder / name).unlink()
+                (scratch / name).unlink()
             made = {}
-        old = set(leftovers(folder))
-        process = subprocess.Popen([command, "apply", *arguments, "--skip-existing"], cwd=folder,
+        old = set(leftovers(scratch))
+        process = subprocess.Popen([command, "apply", *arguments, "--skip-existing"], cwd=scratch,
                                    stderr=subprocess.DEVNULL)
         if kills < STARTS:
             time.sleep(rng.uniform(0, 0.3))
         else:
             # Counted in files, so that the moments are spread over the frames however fast the machine is.
             count = rng.randint(len(made), FRAMES - 1)
-            while process.poll() is None and finished_files(folder) <= count and not (
-                    count == len(made) and set(leftovers(folder)) - old):
+            while process.poll() is None and finished_files(scratch) <= count and not (
+                    count == len(made) and set(leftovers(scratch)) - old):
                 time.sleep(0.001)
             time.sleep(rng.uniform(0, 0.01))  # a few times what a frame takes
         process.kill()
         kills += process.wait() == -9
-        made = contents(folder)
+        made = contents(scratch)
         broken += [f"{name} after {kills} kills" for name in made if made[name] != truth.get(name)]
         partly += 0 < len(made) < FRAMES
-        in_writing += bool(set(leftovers(folder)) - old)
-    code, lines = apply(command, *arguments, "--skip-existing", folder=folder)
+        in_writing += bool(set(leftovers(scratch)) - old)
+    code, lines = apply(command, *arguments, "--skip-existing", folder=scratch)
     report.check(f".{extension}: {kills} kills, {partly} among the frames, {in_writing} in a file; {whole} shots from "
                  "the beginning: no broken file under a final name", not broken, broken)
     # Or it would prove nothing.
     report.check(f".{extension}: kills hit files that were being written, and runs that others went on with",
                  min(in_writing, partly) >= KILLS[extension] * 3 // 10, f"{in_writing} and {partly}")
-    report.check(f".{extension}: at the end the bytes of the unbroken run", code == 0 and contents(folder) == truth, lines)
-    report.check(f".{extension}: nothing is left of killed runs", not leftovers(folder), leftovers(folder))
+    report.check(f".{extension}: at the end the bytes of the unbroken run", code == 0 and contents(scratch) == truth, lines)
+    report.check(f".{extension}: nothing is left of killed runs", not leftovers(scratch), leftovers(scratch))
 
 
 class Job:
@@ -180,7 +172,8 @@ class Job:
         return wrong
 
 
-def end_runs(command, report, scratch, name):
+@pytest.mark.parametrize("name", JOBS)
+def test_command(report, command, scratch, name):
     job = Job(command, scratch, name)
     changed = [path for path in job.whole if job.whole[path] != job.old.get(path)]
     report.check(f"{name}: writes files", changed)
@@ -197,26 +190,3 @@ def end_runs(command, report, scratch, name):
             late = 0
             wrong += [f"moment {moments}: {text}" for text in found]
         report.check(f"{name}: {number.name} at {moments} moments", moments == MOMENTS and not wrong, "\n     ".join(wrong[:10]))
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name, ThreadPoolExecutor() as pool:
-        runs = []
-        for extension in KILLS:
-            folder = Path(name) / extension
-            folder.mkdir()
-            runs.append(pool.submit(kill_runs, command, report, folder, extension))
-        for job in JOBS:
-            runs.append(pool.submit(end_runs, command, report, Path(name) / job, job))
-        for run in runs:
-            run.result()
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -1,46 +1,44 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The frames of a shot: names, missing ones, those that are there already, full disks, and what is said of them.
+"""The frames of a shot: names, missing ones, those that are there already, full disks, and what is said of them."""
 
-    python3 tests/cli/test_sequences.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
-"""
-
-import argparse
 import contextlib
 import os
 import pty
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from shots import DATE, apply, contents, leftovers, make_shot  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, share_of  # noqa: E402
+import pytest
+from pictures import skip
+from shots import DATE, apply, contents, leftovers, make_shot, small_disk
 
 OK, FAILED, USAGE = 0, 1, 2  # exit codes
 HABLE = ["--operator", "hable", "--display", "linear"]  # a warning comes with EXR files of other displays
 
 
-class Shots:
-    """A command, a report, and a folder with frames 1 to 8 of a shot, and what the command makes of them (PNG one by one)."""
+@pytest.fixture(scope="module")
+def made(command, folder):
+    """(what, exit code and lines) of commands that made frames 1 to 8 of a shot, PNG one by one; their files."""
+    make_shot(folder, range(1, 9))
+    results = [(f"apply {n}", apply(command, f"in.{n:04d}.exr", f"out.{n:04d}.png", *HABLE, folder=folder)) for n in range(1, 9)]
+    for extension in ("exr", "tif"):  # of which starting takes the time; test_jobs has them one after the other
+        results.append((f"apply 1-8 .{extension}", apply(command, "in.#.exr", f"out.#.{extension}", *HABLE, "--frames", "1-8",
+                                                         folder=folder)))
+    return results, contents(folder)
 
-    def __init__(self, command, report, folder):
-        self.command, self.report, self.folder = command, report, folder
-        make_shot(folder, range(1, 9))
-        for number in range(1, 9):
-            result = apply(command, f"in.{number:04d}.exr", f"out.{number:04d}.png", *HABLE, folder=folder)
-            report.check(f"apply {number}", result == (OK, []), result)
-        for extension in ("exr", "tif"):  # of which starting takes the time; check_jobs has them one after the other
-            result = apply(command, "in.#.exr", f"out.#.{extension}", *HABLE, "--frames", "1-8", folder=folder)
-            report.check(f"apply 1-8 .{extension}", result == (OK, []), result)
-        self.truth = contents(folder)
+
+def test_made(report, made):
+    for what, result in made[0]:
+        report.check(what, result == (OK, []), result)
+
+
+class Shots:
+    """A command, a report, and a folder with frames 1 to 8 of a shot, and what the command makes of them."""
+
+    def __init__(self, command, report, folder, truth):
+        self.command, self.report, self.folder, self.truth = command, report, folder, truth
 
     def truths(self, numbers, extension="png"):
         return {f"out.{n:04d}.{extension}": self.truth[f"out.{n:04d}.{extension}"] for n in numbers}
@@ -73,7 +71,13 @@ class Shots:
         self.report.check(what, not problems, "; ".join(problems))
 
 
-def check_names(shots):
+@pytest.fixture
+def shots(command, report, folder, made):
+    return Shots(command, report, folder, made[1])
+
+
+@pytest.mark.share(3)
+def test_names(shots):
     for to, frames, expected in (("out.@@@@.png", "2-4", ["out.0002.png", "out.0003.png", "out.0004.png"]),
                                  ("out.@.png", "2-8x3", ["out.2.png", "out.5.png", "out.8.png"]),
                                  ("out.@@.png", "8-6", ["out.06.png", "out.07.png", "out.08.png"]),
@@ -103,7 +107,8 @@ def check_names(shots):
                        f"{code} {[line[-100:] for line in lines]}")
 
 
-def check_jobs(shots):
+@pytest.mark.share(3)
+def test_jobs(shots):
     for extension, options in (("png", ["--jobs", 3, "--threads", 1]), ("exr", ["--jobs", 1, "--threads", 1]),
                                ("tif", ["--jobs", 2, "--threads", 5]), ("png", ["--jobs", 256, "--threads", 2]), ("png", [])):
         result = shots.apply("--frames", "1-8", *options, to=f"out.@@@@.{extension}")
@@ -111,7 +116,8 @@ def check_jobs(shots):
                     shots.truths(range(1, 9), extension))
 
 
-def check_missing(shots):
+@pytest.mark.share(3)
+def test_missing(shots):
     away = [shots.folder / f"in.{number:04d}.exr" for number in (1, 4, 5)]
     for path in away:
         path.rename(path.with_suffix(".away"))
@@ -139,7 +145,8 @@ def check_missing(shots):
         path.with_suffix(".away").rename(path)
 
 
-def check_skip_existing(shots):
+@pytest.mark.share(3)
+def test_skip_existing(shots):
     """Of eight frames each is there in another way."""
     folder = shots.folder
     for extension, of_type in (("exr", ["-d", "float"]), ("tif", []), ("png", [])):
@@ -186,7 +193,8 @@ def check_skip_existing(shots):
         OK, ["tonewright: apply: 1 frame: 0 written, 1 skipped"]), results)
 
 
-def check_in_place(shots):
+@pytest.mark.share(3)
+def test_in_place(shots):
     folder = shots.folder / "place"
     folder.mkdir()
     make_shot(folder, range(1, 9))
@@ -195,7 +203,8 @@ def check_in_place(shots):
                        == sorted(shots.truths(range(1, 9), "exr").values()), result)
 
 
-def check_summary(shots):
+@pytest.mark.share(3)
+def test_summary(shots):
     """Many failures: some lines, and frames that --frames takes."""
     folder = shots.folder / "many"
     folder.mkdir()
@@ -213,7 +222,8 @@ def check_summary(shots):
         "tonewright: apply: 116 frames: 116 written, 116 held for missing ones"] and len(contents(folder)) == 120, lines)
 
 
-def check_progress(shots):
+@pytest.mark.share(3)
+def test_progress(shots):
     """On a terminal frames, rate and time left; the summary; and nothing elsewhere."""
     folder = shots.folder / "progress"
     folder.mkdir()
@@ -243,7 +253,8 @@ def wait_for(process, folder, count):
         time.sleep(0.002)
 
 
-def check_vanishing(shots):
+@pytest.mark.share(3)
+def test_vanishing(shots):
     """Inputs go, or are cut short, while a run is under way."""
     for what, spoil, message in (("vanish", Path.unlink, "No such file or directory"),
                                  ("are truncated", lambda path: os.truncate(path, 1000), "cannot read")):
@@ -270,7 +281,8 @@ def check_vanishing(shots):
                            f"exit {process.returncode}, {len(made)} files: {lines[-3:]}")
 
 
-def check_stopped(shots):
+@pytest.mark.share(3)
+def test_stopped(shots):
     folder = shots.folder / "stopped"
     folder.mkdir()
     make_shot(folder, [1])
@@ -287,27 +299,13 @@ def check_stopped(shots):
             path.unlink()
 
 
-@contextlib.contextmanager
-def small_disk(folder, size):
-    """A file system of its own at a folder; None where none can be made."""
-    folder.mkdir()
-    done = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", folder], capture_output=True, check=False,
-                          text=True)
-    try:
-        yield None if done.returncode else folder
-    finally:
-        if done.returncode == 0:
-            subprocess.run(["umount", folder], check=True)
-
-
-def check_disks(shots):
+@pytest.mark.share(3)
+def test_disks(shots):
     if not shutil.which("mount"):
-        print("skipped: full and read-only disks (mount is not installed)")
-        return
+        skip("full and read-only disks (mount is not installed)")
     with small_disk(shots.folder / "disk", "64k") as disk:
         if disk is None:
-            print("skipped: full and read-only disks (mounting a tmpfs needs root)")
-            return
+            skip("full and read-only disks (mounting a tmpfs needs root)")
         for extension in ("exr", "tif"):
             everything = shots.truths(range(1, 9), extension)
             # Whole pages: room for two frames, and for the beginning of a third.
@@ -349,7 +347,8 @@ def check_disks(shots):
             subprocess.run(["mount", "-o", "remount,size=64k", disk], check=True)
 
 
-def check_unwritable(shots):
+@pytest.mark.share(3)
+def test_unwritable(shots):
     """Files and folders that not even root may change, else those of others."""
     folder, locked = shots.folder, shots.folder / "out.0003.png"
     shots.clean()
@@ -357,8 +356,7 @@ def check_unwritable(shots):
     is_root = os.geteuid() == 0
     if is_root:
         if subprocess.run(["chattr", "+i", locked], capture_output=True, check=False).returncode:
-            print("skipped: unwritable files (chattr +i does not work here)")
-            return
+            skip("unwritable files (chattr +i does not work here)")
     else:
         locked.chmod(0o444)
     try:
@@ -387,21 +385,3 @@ def check_unwritable(shots):
             subprocess.run(["chattr", "-i", target], check=True)
     code, lines = apply(shots.command, "in.@@@@.exr", "none/out.@@@@.png", *HABLE, "--frames", "1-3", folder=folder)
     shots.report.check("no folder", code == FAILED and len(lines) == 4 and "No such file or directory" in lines[0], lines)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
-        shots = Shots(command, report, Path(folder))
-        checks = [check_names, check_jobs, check_missing, check_skip_existing, check_in_place, check_summary,
-                  check_progress, check_vanishing, check_stopped, check_disks, check_unwritable]
-        for check in share_of(checks, 3):
-            check(shots)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

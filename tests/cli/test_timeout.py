@@ -1,25 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """`--timeout`: a reader that hangs, crashes or ends its process costs one frame, not the shot.
 
-    python3 tests/cli/test_timeout.py build/release/bin/tonewright build/release/tests/hostile_reader
-
-The second argument is the folder of an OpenImageIO plugin that reads `.hostile` files, whose text says what their reader
-does. The last line is `N passed, M failed`.
+tests/cli/hostile_reader is an OpenImageIO plugin that reads `.hostile` files, whose text says what their reader does.
 """
 
-import argparse
 import os
 import subprocess
-import sys
-import tempfile
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from shots import contents, leftovers, make_shot  # noqa: E402
+import pytest
+from pictures import share_of, skip
+from shots import contents, leftovers, make_shot
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, share_of  # noqa: E402
+pytestmark = pytest.mark.share(3)
 
 OK, FAILED, FILE = 0, 1, 3  # exit codes
 SHOT = {1: "good", 2: "hang", 3: "good", 4: "crash", 5: "exit", 6: "good"}
@@ -28,8 +22,8 @@ SECONDS = "1"
 
 class Tool:
     def __init__(self, command, reader, folder):
-        self.command, self.folder = command.resolve(), folder
-        self.environment = {**os.environ, "OIIO_LIBRARY_PATH": str(reader.resolve())}
+        self.command, self.folder = command, folder
+        self.environment = {**os.environ, "OIIO_LIBRARY_PATH": str(reader)}
 
     def __call__(self, *arguments):
         """(exit code, lines on standard error, seconds)"""
@@ -43,7 +37,19 @@ class Tool:
             path.unlink()
 
 
-def check_shot(tool, report, *arguments):
+@pytest.fixture(scope="module")
+def tool(command, folder):
+    reader = command.parents[1] / "tests" / "hostile_reader"
+    if not reader.is_dir():
+        skip(f"there is no {reader}")
+    for frame, text in SHOT.items():
+        (folder / f"in.{frame}.hostile").write_text(text)
+    make_shot(folder, range(1, 5))
+    return Tool(command, reader, folder)
+
+
+@pytest.mark.parametrize("arguments", [[], ["--jobs", "1"], ["--auto-exposure", "mean"]], ids=" ".join)
+def test_shot(tool, report, arguments):
     tool.clean()
     code, lines, seconds = tool("apply", "in.@.hostile", "out.@.png", "--operator", "hable", "--frames", "1-6", "--timeout",
                                 SECONDS, *arguments)
@@ -61,7 +67,7 @@ def check_shot(tool, report, *arguments):
     report.check(f"{what} in time", seconds < 30, seconds)
 
 
-def check_pictures(tool, report):
+def test_pictures(tool, report):
     tool.clean()
     hang, crash = (2, "no result after 1 s (--timeout)"), (4, "the process crashed (signal 11")
     for command, options in (("apply", ["out.png", "--operator", "hable"]), ("meter", []),
@@ -78,7 +84,7 @@ def check_pictures(tool, report):
     report.check("nothing is left beside the pictures", not leftovers(tool.folder), leftovers(tool.folder))
 
 
-def check_killed(tool, report):
+def test_killed(tool, report):
     """SIGTERM to the command ends the processes of the pictures, too, and removes their temporary files."""
     tool.clean()
     with subprocess.Popen([str(tool.command), "apply", "in.2.hostile", "out.png", "--operator", "hable", "--timeout", "100"],
@@ -94,7 +100,7 @@ def check_killed(tool, report):
     report.check("SIGTERM leaves nothing", not leftovers(tool.folder), leftovers(tool.folder))
 
 
-def check_same(tool, report):
+def test_same(tool, report):
     """A process for each frame writes and meters the same as one process."""
     cases = [[], ["--auto-exposure", "histogram", "--adapt"], ["--auto-exposure", "log-average", "--threads", "3"],
              ["--operator", "drago", "--statistics", "sequence"], ["--jobs", "2"], ["--frames", "1-3", "--strict"]]
@@ -114,25 +120,3 @@ def check_same(tool, report):
     report.check("the same warnings", said[0] == said[1] and any("warning: " in line for line in said[0][1]), said)
     code, lines, _ = tool("apply", "in.0001.exr", "out.jpg", *pq, "--timeout", "100", "--strict")
     report.check("--strict", code == FAILED and len(lines) == 1 and "--strict" in lines[0], f"{code} {lines}")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    parser.add_argument("reader", type=Path)
-    options = parser.parse_args()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
-        tool = Tool(options.command, options.reader, Path(folder))
-        for frame, text in SHOT.items():
-            (tool.folder / f"in.{frame}.hostile").write_text(text)
-        make_shot(tool.folder, range(1, 5))
-        checks = [(check_shot,), (check_shot, "--jobs", "1"), (check_shot, "--auto-exposure", "mean"), (check_pictures,),
-                  (check_killed,), (check_same,)]
-        for check, *arguments in share_of(checks, 3):
-            check(tool, report, *arguments)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

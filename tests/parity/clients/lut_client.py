@@ -5,19 +5,15 @@ Each program's output is compared twice: with what the numbers in the file give 
 has (its bound is the program's arithmetic), and with the operator itself (its bound is the error that `bake` stated).
 """
 
-import argparse
-import collections
+import functools
 import os
 import re
 import subprocess
-import tempfile
-from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
-
-from pictures import Report, evaluate, log2_decode, need_program, read_rgb, run, skip, unstack, write_exr
-
-from lut_tables import hald_cube, read_cube  # python_check/, which pictures.py puts on the path
+from lut_tables import hald_cube, read_cube
+from pictures import evaluate, log2_decode, need_program, read_rgb, run, skip, unstack, write_exr
 
 # AgX as Sobotka has it, of log2 light: every channel of its picture depends on all three in another way, so no channel
 # or axis can be taken for another; and its cube of 33 is 1.4e-3 from it, so little that the operator is seen.
@@ -56,6 +52,12 @@ def codes():
     return (np.round(rgb * 65535) / 65535).astype(np.float32)
 
 
+@functools.cache
+def truth(command):
+    """The operator's colors for all codes."""
+    return evaluate(command, log2_decode(codes().reshape(-1, 3).astype(float)), OPERATOR)
+
+
 def write_picture(path, rgb, depth="uint16"):
     """A picture of codes, through oiiotool, which is told that they are sRGB: or a PNG would say that they are linear."""
     plain = path.with_name(path.name + ".exr")
@@ -70,14 +72,12 @@ def write_picture(path, rgb, depth="uint16"):
 class LutTest:
     """A program's output for the codes, against a file's numbers and against the operator."""
 
-    def __init__(self, command, scratch, client, runner=()):
-        """runner: the words before the name of the program."""
+    def __init__(self, report, command, scratch, client):
+        runner = client.runner()
         self.command, self.scratch, self.client, self.version = command, scratch, client, version_of(client, runner)
         self.program = [*runner, client.program]
-        self.report, self.codes, self.rows = Report(), codes(), []
-        flat = self.codes.reshape(-1, 3).astype(float)
-        self.flat = flat
-        self.truth = evaluate(command, log2_decode(flat), OPERATOR)
+        self.report, self.codes, self.rows = report, codes(), []
+        self.flat, self.truth = self.codes.reshape(-1, 3).astype(float), truth(command)
         print(self.version)
 
     def bake(self, host, name, *arguments):
@@ -117,13 +117,26 @@ class LutTest:
         self.rows.append(f"| {self.version} | {what} | {np.abs(near).max():.1e} | {near_bound:.1e} "
                          f"| {np.abs(far).max():.1e} | {far_bound:.1e} |")
 
-    def finish(self):
-        """Rows as docs/clients.md has them, then the exit status."""
-        print(*self.rows, sep="\n")
-        return self.report.finish()
 
+class Client(NamedTuple):
+    """A program; where it is newer, the one that `$TONEWRIGHT_NEWER_PROGRAMS PROGRAM ...` runs."""
+    title: str
+    program: str
+    package: str
+    version: str
+    newer: bool = False
 
-Client = collections.namedtuple("Client", "title program package version")
+    def __str__(self):
+        return f"newer_{self.program}" if self.newer else self.program
+
+    def runner(self):
+        """The words before the name of the program. Skips the test where it is missing."""
+        words = [os.environ.get("TONEWRIGHT_NEWER_PROGRAMS", "")] if self.newer else []
+        if words == [""]:
+            skip("TONEWRIGHT_NEWER_PROGRAMS is not set")
+        for program, package in [(self.program, self.package), ("oiiotool", "openimageio-tools")][self.newer:]:
+            need_program(program, package)
+        return words
 
 
 def version_of(client, runner=()):
@@ -134,26 +147,3 @@ def version_of(client, runner=()):
     except FileNotFoundError:
         number = None
     return f"{client.title} {number[0] if number else '(unknown version)'}"
-
-
-def lut_test(doc, main, *clients, needs=()):
-    """Runs main(LutTest) for the command of the arguments, and for one of several clients by its program's name.
-
-    --newer runs the client as `$TONEWRIGHT_NEWER_PROGRAMS PROGRAM ...`. needs: further programs, as (name, Debian package).
-    """
-    parser = argparse.ArgumentParser(description=doc.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    if len(clients) > 1:
-        parser.add_argument("program", choices=[client.program for client in clients])
-    parser.add_argument("--newer", action="store_true")
-    arguments = parser.parse_args()
-    runner = [os.environ.get("TONEWRIGHT_NEWER_PROGRAMS", "")] if arguments.newer else []
-    if runner == [""]:
-        skip("TONEWRIGHT_NEWER_PROGRAMS is not set")
-    client = next(c for c in clients if len(clients) == 1 or c.program == arguments.program)
-    for program, package in [(client.program, client.package), ("oiiotool", "openimageio-tools"), *needs][bool(runner):]:
-        need_program(program, package)
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
-        test = LutTest(arguments.command.resolve(), Path(folder), client, runner)
-        main(test)
-        return test.finish()

@@ -1,31 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of every display in a browser: what Chromium reads in them is the light that was shown.
 
-    python3 tests/parity/clients/test_chromium.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/clients/test_chromium.py --tonewright build/release/bin/tonewright
 
 Patches of known light go through the operator `clamp`, which leaves them as they are, to PNG files for each display.
 Chromium draws each file on canvases of sRGB and of Display P3, and reads them back: it has to follow the profile or the
 code points of the file. Expected values are formulas of IEC 61966-2-1. An HDR picture is shown with its own scale, which
-Chromium chooses: one factor for all patches, and absolute luminance (BT.2100: code values stand for cd/m2). The last
-line is `N passed, M failed`.
+Chromium chooses: one factor for all patches, and absolute luminance (BT.2100: code values stand for cd/m2).
 """
 
-import argparse
 import base64
 import json
 import re
 import shutil
 import subprocess
-import tempfile
-from pathlib import Path
 
 import numpy as np
-from pictures import Report, run, skip
+import pytest
+from pictures import run, skip
 
-try:
-    import OpenImageIO as oiio
-except ImportError:
-    skip("OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 PATCH = 16
 LIGHT = np.array([[0, 0, 0], [.18, .18, .18], [1, 1, 1], [.5, .05, .02], [.02, .5, .05], [.05, .02, .5],
@@ -99,48 +93,37 @@ def read_back(chromium, folder, pictures):
     return {key: np.array(value) for key, value in json.loads(found.group(1)).items()}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
+def test_displays(report, command, scratch):
     chromium = shutil.which("chromium")
     if not chromium:
         skip("Chromium is missing (Debian: chromium)")
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        folder = Path(name)
-        write_scene(folder / "in.exr")
-        pictures = {}
-        for key, *options in (("srgb", "srgb"), ("display_p3", "display_p3"), ("rec1886", "rec1886"),
-                              ("rec2020", "rec2020"), ("g22", "g22"), ("linear", "linear"),
-                              ("rec2100_pq", "rec2100_pq"), ("rec2100_hlg", "rec2100_hlg"), ("p3d65_pq", "p3d65_pq"),
-                              ("bright_pq", "rec2100_pq", "--reference-white", "203")):
-            pictures[key] = folder / f"{key}.png"
-            run(command, "apply", folder / "in.exr", pictures[key], "--operator", "clamp", "-d", "uint16",
-                "--display", *options)
-        codes = read_back(chromium, folder, pictures)
-        for canvas, matrix in TO.items():
-            light = LIGHT.astype(float) @ matrix.T
-            for key in ("srgb", "display_p3", "rec1886", "rec2020", "g22", "linear"):
-                # Chromium's curves are approximations: half a code value of 8 bits. Bytes of a P3 picture that are
-                # taken for sRGB are 53 code values off.
-                report.compare(f"{key} on a canvas of {canvas}", codes[f"{key} {canvas}"], encode(light),
-                               0.5 / 255)
-            lit = LIGHT.min(axis=1) > 0.01
-            scales = {}
-            for key in ("rec2100_pq", "rec2100_hlg", "p3d65_pq", "bright_pq"):
-                ratios = decode(codes[f"{key} {canvas}"][lit]) / light[lit]
-                scales[key] = np.median(ratios)
-                # The darkest channel is 0.02 of white; half floats and the curve leave a percent or two of it.
-                report.bound(f"{key} on a canvas of {canvas}: one scale for all colors",
-                             np.abs(ratios / scales[key] - 1).max(), 0.03)
-            for key in ("rec2100_hlg", "p3d65_pq"):
-                report.bound(f"{key} is as bright as rec2100_pq on {canvas}", abs(scales[key] / scales["rec2100_pq"] - 1),
-                             0.02)
-            report.bound(f"white of 203 cd/m2 is 2.03 times that of 100 on {canvas}",
-                         abs(scales["bright_pq"] / scales["rec2100_pq"] / 2.03 - 1), 0.02)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+    write_scene(scratch / "in.exr")
+    pictures = {}
+    for key, *options in (("srgb", "srgb"), ("display_p3", "display_p3"), ("rec1886", "rec1886"),
+                          ("rec2020", "rec2020"), ("g22", "g22"), ("linear", "linear"),
+                          ("rec2100_pq", "rec2100_pq"), ("rec2100_hlg", "rec2100_hlg"), ("p3d65_pq", "p3d65_pq"),
+                          ("bright_pq", "rec2100_pq", "--reference-white", "203")):
+        pictures[key] = scratch / f"{key}.png"
+        run(command, "apply", scratch / "in.exr", pictures[key], "--operator", "clamp", "-d", "uint16",
+            "--display", *options)
+    codes = read_back(chromium, scratch, pictures)
+    for canvas, matrix in TO.items():
+        light = LIGHT.astype(float) @ matrix.T
+        for key in ("srgb", "display_p3", "rec1886", "rec2020", "g22", "linear"):
+            # Chromium's curves are approximations: half a code value of 8 bits. Bytes of a P3 picture that are
+            # taken for sRGB are 53 code values off.
+            report.compare(f"{key} on a canvas of {canvas}", codes[f"{key} {canvas}"], encode(light),
+                           0.5 / 255)
+        lit = LIGHT.min(axis=1) > 0.01
+        scales = {}
+        for key in ("rec2100_pq", "rec2100_hlg", "p3d65_pq", "bright_pq"):
+            ratios = decode(codes[f"{key} {canvas}"][lit]) / light[lit]
+            scales[key] = np.median(ratios)
+            # The darkest channel is 0.02 of white; half floats and the curve leave a percent or two of it.
+            report.bound(f"{key} on a canvas of {canvas}: one scale for all colors",
+                         np.abs(ratios / scales[key] - 1).max(), 0.03)
+        for key in ("rec2100_hlg", "p3d65_pq"):
+            report.bound(f"{key} is as bright as rec2100_pq on {canvas}", abs(scales[key] / scales["rec2100_pq"] - 1),
+                         0.02)
+        report.bound(f"white of 203 cd/m2 is 2.03 times that of 100 on {canvas}",
+                     abs(scales["bright_pq"] / scales["rec2100_pq"] / 2.03 - 1), 0.02)

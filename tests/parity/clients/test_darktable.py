@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """darktable's module "LUT 3D" with a .cube of `tonewright bake`, against the file and against the operator.
 
-    python3 tests/parity/clients/test_darktable.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/clients/test_darktable.py --tonewright build/release/bin/tonewright
 
-Float EXR in and out; the module works in linear Rec.709, so that its numbers are the picture's. The last line is
-`N passed, M failed`.
+Float EXR in and out; the module works in linear Rec.709, so that its numbers are the picture's.
 """
 
 import re
 import struct
 
-from lut_client import Client, lut_test
+import pytest
+from lut_client import Client
 from lut_tables import tetrahedral, trilinear
 from pictures import read_rgb, run
 
@@ -59,7 +59,8 @@ def through_darktable(test, codes, cube, interpolation):
     return read_rgb(out, test.scratch)
 
 
-def main(test):
+@pytest.mark.parametrize("client", [Client("darktable", "darktable-cli", "darktable", "darktable-cli --version")], ids=str)
+def test_cube(test):
     codes = test.picture("codes.exr")
     plain = through_darktable(test, codes, None, 0)
     test.report.compare("without a LUT: the picture itself", plain, test.codes, IDENTITY)
@@ -69,8 +70,3 @@ def main(test):
         cube, table, stated = test.cube(host)
         test.compare(f".cube 33, {name}", through_darktable(test, codes, cube, number), interpolate(table, test.flat),
                      stated, WORKING_PROFILE, clips=False)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("darktable", "darktable-cli", "darktable",
-                                                    "darktable-cli --version")))

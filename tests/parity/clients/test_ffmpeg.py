@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """ffmpeg's lut3d, lut1d and haldclut with LUTs of `tonewright bake`, against the file itself and against the operator.
 
-    python3 tests/parity/clients/test_ffmpeg.py build/release/bin/tonewright [--newer]
+    python3 -m pytest tests/parity/clients/test_ffmpeg.py --tonewright build/release/bin/tonewright
 
 ffmpeg reads float EXR, whose pixels are the codes that the LUT takes, and writes float EXR: no 8-bit step, no swscale.
-Real pictures join the test chart where they are found, see pictures.shared_picture. The last line is
-`N passed, M failed`.
+Real pictures join the test chart where they are found, see pictures.shared_picture.
 """
 
 import json
@@ -13,16 +12,23 @@ import shlex
 import subprocess
 
 import numpy as np
-
-from lut_client import BITS16, FLOAT32, HEIGHT, WIDTH, Client, lut_test
+import pytest
+from lut_client import BITS16, FLOAT32, HEIGHT, WIDTH, Client
 from lut_encodings import acescct_decode, acescct_encode
 from lut_tables import hald_cube, linear, read_cube, stated_errors, tetrahedral, trilinear
 from operators import rgb_to_rgb  # from the chromaticities, a second opinion on the program's
-from pictures import (evaluate, log2_decode, log2_encode, read_exr, read_rgb, run, shared_picture, skip, stack, unstack,
-                      write_exr)
+from pictures import evaluate, log2_decode, log2_encode, read_exr, read_rgb, run, shared_picture, skip, stack, unstack, write_exr
 
+FFMPEG = Client("ffmpeg", "ffmpeg", "ffmpeg", "ffmpeg -version")
+BOTH = pytest.mark.parametrize("client", [FFMPEG, FFMPEG._replace(newer=True)], ids=str)
 # Colors compared with the operator; `eval` reads text, a million lines would take longer than they tell.
 SAMPLES = 20000
+
+
+@pytest.fixture(autouse=True)
+def needs_exr(test):
+    if " exr " not in run(*test.program, "-v", "error", "-encoders"):
+        skip("ffmpeg has no EXR encoder (older than 5.0)")
 
 
 def through_ffmpeg(test, codes, filter_):
@@ -59,7 +65,8 @@ def through_haldclut(test, codes, hald, interpolation, form):
     return np.fromfile(test.scratch / "graded.raw", "<u2").reshape(HEIGHT, WIDTH, 3) / 65535
 
 
-def check_modes(test):
+@BOTH
+def test_modes(test):
     """Both interpolations of lut3d and haldclut, with numbers of 32 and of 16 bits."""
     for name, interpolate, host in (("tetrahedral", tetrahedral, "ffmpeg"), ("trilinear", trilinear, "gmic")):
         cube, table, stated = test.cube(host)
@@ -75,7 +82,8 @@ def check_modes(test):
         test.compare(f"haldclut of 36, {name}, 16 bits", shown, interpolate(table, test.flat), stated, BITS16)
 
 
-def check_limits(test):
+@BOTH
+def test_limits(test):
     """What ffmpeg does not read in a .cube: both tables of resolve_cube, and domains that do not start at 0 or end below 1."""
     report, scratch = test.report, test.scratch
     run(test.command, "bake", "agx_sobotka", "--format", "resolve_cube", "--size", 17, "--nodes", "sampled", "-o",
@@ -99,7 +107,8 @@ def check_limits(test):
         report.check(f"{what}: {'read' if is_read else 'misread'}, {error:.1e} from the operator", (error < 5e-4) == is_read)
 
 
-def check_bits(test):
+@BOTH
+def test_bits(test):
     """16-bit results are cut off, not rounded: half a code too dark. And 16 bits as float: swscale is off, zscale is not."""
     codes = np.random.default_rng(7).integers(0, 65536, (64, 64, 3)).astype("<u2")
     (test.scratch / "codes.raw").write_bytes(codes.tobytes())
@@ -153,12 +162,12 @@ def planes_420(ycc, side):
     return [y, cb[::2, ::2], cr[::2, ::2]]
 
 
-def check_hdr10(test):
+@pytest.mark.parametrize("client", [FFMPEG], ids=str)  # with ffprobe, and the command of `list --hosts`
+def test_hdr10(test):
     """The line that `list --hosts` prints, on an HDR10 clip: SDR that says that it is SDR."""
     scratch, report = test.scratch, test.report
     if "libx265" not in run("ffmpeg", "-v", "error", "-encoders") or "zscale" not in run("ffmpeg", "-v", "error", "-filters"):
-        print("skipped: HDR10 video (ffmpeg has no libx265 or no zscale)")
-        return
+        skip("HDR10 video (ffmpeg has no libx265 or no zscale)")
     hosts = json.loads(run(test.command, "list", "--hosts", "--json"))
     steps = next(host["steps"] for host in hosts if host["id"] == "ffmpeg")
     run(test.command, "bake", "agx_sobotka", "--for", "ffmpeg", "--nodes", "sampled", "-o", scratch / "sdr.cube")
@@ -202,10 +211,9 @@ def check_hdr10(test):
     report.compare("HDR10 to SDR: the pixels, in codes of 8 bits", shown, wanted, 2.5)
 
 
-def main(test):
+@BOTH
+def test_picture(test):
     command, scratch = test.command, test.scratch
-    if " exr " not in run(*test.program, "-v", "error", "-encoders"):
-        skip("ffmpeg has no EXR encoder (older than 5.0)")
     run(command, "chart", "-o", scratch / "chart.exr", "--width", 768, "--height", 432)
     memorial = shared_picture("memorial.hdr")
     pictures = [scratch / "chart.exr"] + ([memorial] if memorial else [])
@@ -230,12 +238,3 @@ def main(test):
         graded = through_ffmpeg(test, codes, "lut1d=hable.cube:interp=linear")
         compare(test, f"lut1d, .cube 4096 of Hable, {name}", codes, graded, curve, curve_stated, linear,
                 log2_decode, ("hable",))
-    check_modes(test)
-    check_limits(test)
-    check_bits(test)
-    if len(test.program) == 1:  # with ffprobe, and the command of `list --hosts`
-        check_hdr10(test)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("ffmpeg", "ffmpeg", "ffmpeg", "ffmpeg -version")))

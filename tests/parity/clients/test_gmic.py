@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """G'MIC with LUTs of `tonewright bake`: a .cube, a Hald CLUT and a strip, against the file and against the operator.
 
-    python3 tests/parity/clients/test_gmic.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/clients/test_gmic.py --tonewright build/release/bin/tonewright
 
 As `list --hosts` says: G'MIC's own `map_clut` takes v n / 256 for the place of v, so that no table fits. The strip has
-the layout of Unreal and Godot, whose programs are not here. The last line is `N passed, M failed`.
+the layout of Unreal and Godot, whose programs are not here.
 """
 
-from lut_client import FLOAT32, Client, lut_test
+import pytest
+from lut_client import FLOAT32, Client
 from lut_tables import strip_cube, trilinear
 from pictures import read_rgb, run
 
@@ -23,7 +24,8 @@ def through_gmic(test, codes, lut, *words, size):
     return read_rgb(out, test.scratch)
 
 
-def main(test):
+@pytest.mark.parametrize("client", [Client("G'MIC", "gmic", "gmic", "gmic -version")], ids=str)
+def test_lut(test):
     codes = test.picture("codes.tif", "float")
     cube, table, stated = test.cube("gmic")
     shown = through_gmic(test, codes, cube, "div[1]", 255, size=33)
@@ -35,7 +37,3 @@ def main(test):
     table = strip_cube(read_rgb(path, test.scratch))
     shown = through_gmic(test, codes, path, "div[1]", 65535, "split[1]", f"x,{STRIP}", "append[1--1]", "z", size=STRIP)
     test.compare("strip of 32, 16 bits", shown, trilinear(table, test.flat), stated, FLOAT32)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("G'MIC", "gmic", "gmic", "gmic -version")))

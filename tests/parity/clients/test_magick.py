@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """GraphicsMagick or ImageMagick with a Hald CLUT of `tonewright bake`, against the file and against the operator.
 
-    python3 tests/parity/clients/test_magick.py build/release/bin/tonewright gm|convert|magick [--newer]
+    python3 -m pytest tests/parity/clients/test_magick.py --tonewright build/release/bin/tonewright
 
-All interpolate in cubes, on 16 bits. The last line is `N passed, M failed`.
+All interpolate in cubes, on 16 bits.
 """
 
 import numpy as np
-
-from lut_client import BITS16, Client, lut_test
+import pytest
+from lut_client import BITS16, Client
 from lut_tables import trilinear
 from pictures import read_rgb, run, unstack, write_exr
 
@@ -39,7 +39,11 @@ def check_above(test):
                           abs(shown[1:]).max() < 1e-4 and (shown[0] > largest if largest else abs(shown[0]) < 1e-4))
 
 
-def main(test):
+@pytest.mark.parametrize("client", [
+    Client("GraphicsMagick", "gm", "graphicsmagick", "gm version"),
+    Client("ImageMagick", "convert", "imagemagick", "convert -version"),
+    Client("ImageMagick", "magick", "imagemagick", "magick -version", newer=True)], ids=str)
+def test_hald(test):
     hald, table, stated = test.hald("imagemagick")
     for name in ("codes.tif", "codes.png"):  # a PNG says what its numbers are: its reader may act on that
         shown = through_magick(test, hald, test.picture(name))
@@ -47,9 +51,3 @@ def main(test):
                      BITS16)
     if test.client.program != "gm":
         check_above(test)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("GraphicsMagick", "gm", "graphicsmagick", "gm version"),
-                              Client("ImageMagick", "convert", "imagemagick", "convert -version"),
-                              Client("ImageMagick", "magick", "imagemagick", "magick -version")))

@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """mpv's gpu-next (libplacebo) with LUTs of `tonewright bake`, against the file and against the operator.
 
-    python3 tests/parity/clients/test_mpv.py build/release/bin/tonewright [--newer]
+    python3 -m pytest tests/parity/clients/test_mpv.py --tonewright build/release/bin/tonewright
 
 On Mesa's software renderer and a screen that nobody sees; a script of mpv's takes a screenshot of 16 bits. libplacebo
-interpolates in cubes in mpv 0.35, and in tetrahedra in mpv 0.41. The last line is `N passed, M failed`.
+interpolates in cubes in mpv 0.35, and in tetrahedra in mpv 0.41.
 """
 
 import os
 import re
 import subprocess
 
-from lut_client import Client, lut_test
+import pytest
+from lut_client import Client
 from lut_tables import tetrahedral, trilinear
 from pictures import read_rgb, screen, skip
 
@@ -50,7 +51,11 @@ def through_mpv(test, display, lut, codes, *options):
     return read_rgb(out, test.scratch)
 
 
-def main(test):
+MPV = Client("mpv", "mpv", "mpv", "mpv --version")
+
+
+@pytest.mark.parametrize("client", [MPV, MPV._replace(newer=True)], ids=str)
+def test_lut(test):
     codes = test.picture("codes.png")
     with screen() as display:
         if not display:
@@ -67,7 +72,3 @@ def main(test):
             interpolate = trilinear if is_old else tetrahedral
             test.compare(f".cube {size}, --image-lut, {interpolate.__name__}", shown, interpolate(table, test.flat), stated,
                          SCREENSHOT)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("mpv", "mpv", "mpv", "mpv --version")))

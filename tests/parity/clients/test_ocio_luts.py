@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """oiiotool or ocioconvert with LUT files of `tonewright bake`, against the files and against the operator.
 
-    python3 tests/parity/clients/test_ocio_luts.py build/release/bin/tonewright oiiotool|ocioconvert
+    python3 -m pytest tests/parity/clients/test_ocio_luts.py --tonewright build/release/bin/tonewright
 
 OpenColorIO reads all these formats and interpolates in tetrahedra, on the CPU, and in ocioconvert also in a shader, on
-Mesa's software renderer and a screen that nobody sees. The last line is `N passed, M failed`.
+Mesa's software renderer and a screen that nobody sees.
 """
 
 import os
 import subprocess
 
-from lut_client import FLOAT32, Client, lut_test
+import pytest
+from lut_client import FLOAT32, Client
 from lut_tables import read_cube, tetrahedral
 from pictures import PROJECT, read_exr, run, screen, stack
 
@@ -36,7 +37,10 @@ def through_ocioconvert(test, lut, codes, *options, display=None):
     return stack(read_exr(out))
 
 
-def main(test):
+@pytest.mark.parametrize("client", [
+    Client("oiiotool, OpenColorIO", "oiiotool", "openimageio-tools", "pkg-config --modversion OpenColorIO"),
+    Client("ocioconvert, OpenColorIO", "ocioconvert", "opencolorio-tools", "pkg-config --modversion OpenColorIO")], ids=str)
+def test_formats(test):
     codes = test.picture("codes.exr")
     through = through_oiiotool if test.client.program == "oiiotool" else through_ocioconvert
     for extension in FORMATS:
@@ -56,9 +60,3 @@ def main(test):
             print(f"skipped: the GPU path ({error})")
             return
         test.compare(".cube 33, --gpu", shown, predicted, stated, FLOAT32, clips=False)
-
-
-if __name__ == "__main__":
-    version = "pkg-config --modversion OpenColorIO"
-    raise SystemExit(lut_test(__doc__, main, Client("oiiotool, OpenColorIO", "oiiotool", "openimageio-tools", version),
-                              Client("ocioconvert, OpenColorIO", "ocioconvert", "opencolorio-tools", version)))

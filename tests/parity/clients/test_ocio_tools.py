@@ -1,30 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """ociobakelut, ociomergeconfigs and oiiotool 3.1 with the OpenColorIO config: the limits that docs/config.md names.
 
-    python3 tests/parity/clients/test_ocio_tools.py build/release/bin/tonewright ocio_config [--newer]
+    python3 -m pytest tests/parity/clients/test_ocio_tools.py --tonewright build/release/bin/tonewright
 
---newer runs the programs of TONEWRIGHT_NEWER_OCIO (`PROGRAM ociobakelut ...`), otherwise the installed ones. The last
-line is `N passed, M failed`.
+Tests named newer run the programs of TONEWRIGHT_NEWER_OCIO (`PROGRAM ociobakelut ...`), others the installed ones.
 """
 
-import argparse
 import os
 import re
-import shutil
 import struct
 import subprocess
-import tempfile
-from pathlib import Path
 
 import numpy as np
+import pytest
+from pictures import PROJECT, evaluate, need_program, run, skip, unstack, write_exr
 
-from pictures import Report, evaluate, run, skip, unstack, write_exr
+ocio = pytest.importorskip("PyOpenColorIO", reason="PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
 
-try:
-    import PyOpenColorIO as ocio
-except ImportError:
-    skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
-
+FOLDER = PROJECT / "ocio_config"
 CLF = "Academy/ASC Common LUT Format"
 GRAYS = np.array([0.05, 0.18, 0.5, 1, 2, 4, 16], np.float32)
 # ITU-T H.273: primaries, transfer, matrix, range; of the displays that have an interop id with code points.
@@ -51,10 +44,26 @@ def cicp_of(path):
     return "none"
 
 
-def check_bake(report, runner, command, folder, scratch):
+def runner_of(program, is_newer=True):
+    """The words before a program's name. Skips the test where it is missing."""
+    if not is_newer:
+        need_program(program, "opencolorio-tools")
+        return []
+    if not os.environ.get("TONEWRIGHT_NEWER_OCIO"):
+        skip("TONEWRIGHT_NEWER_OCIO is not set")
+    runner = [os.environ["TONEWRIGHT_NEWER_OCIO"]]
+    done = subprocess.run([*runner, program, "--help"], capture_output=True, text=True, check=False)
+    if not done.stdout and not done.stderr.startswith(program):
+        skip(f"{program}: {done.stderr.strip()[-80:]}")
+    return runner
+
+
+@pytest.mark.parametrize("is_newer", [False, True], ids=["installed", "newer"])
+def test_bake(report, command, scratch, is_newer):
     """ociobakelut ends at scene-linear 1, without a word; `tonewright bake` has every half float."""
+    runner = runner_of("ociobakelut", is_newer)
     theirs, ours = scratch / "theirs.clf", scratch / "ours.clf"
-    done = subprocess.run([*runner, "ociobakelut", "--iconfig", folder / "config.ocio", "--inputspace", "Linear Rec.709",
+    done = subprocess.run([*runner, "ociobakelut", "--iconfig", FOLDER / "config.ocio", "--inputspace", "Linear Rec.709",
                            "--outputspace", "Output - Hable - sRGB", "--format", CLF, theirs], capture_output=True, text=True,
                           check=True)
     run(command, "bake", "hable", "--input-encoding", "linear", "-o", ours)
@@ -68,12 +77,13 @@ def check_bake(report, runner, command, folder, scratch):
     report.check("verify --lut names what ociobakelut wrote", "is hable with linear:0:1 input" in said, said)
 
 
-def check_merge(report, runner, folder, scratch):
+def test_merge_newer(report, scratch):
     """Merged by default, textures of other spaces are replaced by views that are equal to them up to white."""
+    runner = runner_of("ociomergeconfigs")
     for options, is_complete in (("{}", False), ("{avoid_duplicates: false}", True)):
         (scratch / "m.ociom").write_text(
             "ociom_version: 1.0\nsearch_path: [.]\nmerge:\n  Merged:\n    base: ocio://cg-config-latest\n"
-            f"    input: {folder / 'config.ocio'}\n    options: {options}\n")
+            f"    input: {FOLDER / 'config.ocio'}\n    options: {options}\n")
         done = subprocess.run([*runner, "ociomergeconfigs", scratch / "m.ociom", "--out", scratch / "merged.ocio"],
                               capture_output=True, text=True, check=True)
         text = (scratch / "merged.ocio").read_text()
@@ -83,13 +93,14 @@ def check_merge(report, runner, folder, scratch):
                      (not lost and not replaced) if is_complete else (lost and replaced), (lost, replaced))
 
 
-def check_tags(report, runner, folder, scratch):
+def test_tags_newer(report, scratch):
     """oiiotool 3.1 tags a PNG by the config of OCIO alone."""
+    runner = runner_of("oiiotool")
     write_exr(scratch / "in.exr", unstack(np.full((8, 8, 3), 0.18, np.float32)))
 
     def tag_of(display, *options, config="config-2.5.ocio", variable=True):
-        place = {"OCIO": str(folder / config)} if variable else {}
-        chosen = [] if variable else ["--colorconfig", folder / config]
+        place = {"OCIO": str(FOLDER / config)} if variable else {}
+        chosen = [] if variable else ["--colorconfig", FOLDER / config]
         environment = {**{k: v for k, v in os.environ.items() if k != "OCIO"}, **place}
         subprocess.run([*runner, "oiiotool", *chosen, scratch / "in.exr", "--ociodisplay", display, "Hable", *options, "-d",
                         "uint16", "-o", scratch / "out.png"], capture_output=True, check=True, env=environment)
@@ -102,41 +113,3 @@ def check_tags(report, runner, folder, scratch):
     found = {tag_of("Rec.2100-PQ", "--cicp", "9,16,0,1", variable=False, config=name)
              for name in ("config.ocio", "config-2.5.ocio")}
     report.check("oiiotool 3.1: --cicp writes it with both", found == {"9/16/0/1"}, found)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--newer", action="store_true")
-    arguments = parser.parse_args()
-    command, folder = arguments.command.resolve(), arguments.folder.resolve()
-    runner = [os.environ.get("TONEWRIGHT_NEWER_OCIO", "")] if arguments.newer else []
-    if runner == [""]:
-        skip("TONEWRIGHT_NEWER_OCIO is not set")
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        scratch = Path(name)
-
-        def has(program):
-            """A program of the newer ones, or an installed one."""
-            if not runner:
-                return shutil.which(program)
-            done = subprocess.run([*runner, program, "--help"], capture_output=True, text=True, check=False)
-            if done.stdout or done.stderr.startswith(program):
-                return True
-            print(f"skipped: {program}: {done.stderr.strip()[-80:]}")
-            return False
-
-        if not has("ociobakelut"):
-            skip("ociobakelut is not there (Debian: opencolorio-tools)")
-        check_bake(report, runner, command, folder, scratch)
-        if runner and has("ociomergeconfigs"):
-            check_merge(report, runner, folder, scratch)
-        if runner and has("oiiotool"):
-            check_tags(report, runner, folder, scratch)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """ociochecklut with LUTs of `tonewright bake`, color by color, on its CPU and its GPU path.
 
-    python3 tests/parity/clients/test_ociochecklut.py build/release/bin/tonewright
-
-The last line is `N passed, M failed`.
+    python3 -m pytest tests/parity/clients/test_ociochecklut.py --tonewright build/release/bin/tonewright
 """
 
 import os
@@ -11,8 +9,8 @@ import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-
-from lut_client import FLOAT32, OPERATOR, Client, lut_test
+import pytest
+from lut_client import FLOAT32, OPERATOR, Client
 from lut_tables import read_cube, tetrahedral
 from pictures import evaluate, log2_decode, screen
 
@@ -33,7 +31,9 @@ def through_ociochecklut(lut, codes, *options, environment=None):
         return np.array(list(pool.map(one, codes)))
 
 
-def main(test):
+@pytest.mark.parametrize("client", [Client(
+    "ociochecklut, OpenColorIO", "ociochecklut", "opencolorio-tools", "pkg-config --modversion OpenColorIO")], ids=str)
+def test_formats(test):
     # Some of the picture's codes, and what lies outside of them: below 0 and above 1, where a table ends.
     test.flat = np.concatenate([test.flat[::len(test.flat) // COUNT], [[-0.25, 0.5, 1.5], [1, 1, 1], [0, 0, 0]]])
     test.truth = evaluate(test.command, log2_decode(np.clip(test.flat, 0, 1)), OPERATOR)
@@ -52,8 +52,3 @@ def main(test):
         test.flat, test.truth = test.flat[::5], test.truth[::5]
         shown = through_ociochecklut(cube, test.flat, "--gpu", environment=environment)
         test.compare(".cube 33, --gpu", shown, tetrahedral(table, test.flat), stated, PRINTED, clips=False)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client(
-        "ociochecklut, OpenColorIO", "ociochecklut", "opencolorio-tools", "pkg-config --modversion OpenColorIO")))

@@ -1,24 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """ocioconvert with the OpenColorIO config against `tonewright apply`: its CPU path, and its GPU path without a GPU.
 
-    python3 tests/parity/clients/test_ocioconvert.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/clients/test_ocioconvert.py --tonewright build/release/bin/tonewright
 
 ocioconvert is OpenColorIO's own program: its GPU path is the shader that viewers draw with, here with tables of 32
 bits, on Mesa's software renderer and a screen that nobody sees. The config is ocio_config/ of the working directory.
-The last line is `N passed, M failed`.
 """
 
-import argparse
 import os
 import subprocess
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
-
-from pictures import (LIGHT, Report, nearest_of_bytes, need_program, read_exr, read_rgb, run, screen, shared_picture,
-                      stack, unstack, write_exr)
+from pictures import (LIGHT, PROJECT, nearest_of_bytes, need_program, read_exr, read_rgb, run, screen, shared_picture, stack, unstack,
+                      write_exr)
 from test_blender import OPERATORS
 from test_oiiotool import EXACT, bound_of
 
@@ -43,7 +38,7 @@ JOBS = [(view, "sRGB", "srgb", view in ON_GPU) for view in OPERATORS] + [
     ("Reinhard Extended", "P3-D65 PQ", "p3d65_pq", False)]
 
 
-def test_picture(scratch):
+def make_picture(scratch):
     """Random colors of 18 stops, a fifth of them with negatives, primaries, black; a real picture where there is one.
 
     Its sides are powers of two: ocioconvert's GPU path reads the picture by filtering, at positions in float32, so
@@ -164,18 +159,13 @@ def check_bytes(report, command, convert, config, picture):
                    bound_of(config, "AgX"))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
+def test_views_and_spaces(report, command, scratch):
     need_program("ocioconvert", "opencolorio-tools")
     need_program("oiiotool", "openimageio-tools")
-    config = Path("ocio_config/config.ocio").resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder, screen() as display:
-        scratch = Path(folder)
+    config = PROJECT / "ocio_config/config.ocio"
+    with screen() as display:
         convert = Ocioconvert(config, scratch)
-        picture = test_picture(scratch)
+        picture = make_picture(scratch)
         if display:
             convert.environment["DISPLAY"] = display
             has_gpu = finds_gpu(report, convert, picture)
@@ -185,8 +175,3 @@ def main():
         check_views(report, command, convert, config, picture, has_gpu)
         check_spaces(report, command, convert, config, picture, has_gpu)
         check_bytes(report, command, convert, config, picture)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """RawTherapee's Film Simulation with a Hald CLUT of `tonewright bake`, against the file and against the operator.
 
-    python3 tests/parity/clients/test_rawtherapee.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/clients/test_rawtherapee.py --tonewright build/release/bin/tonewright
 
-TIFF of 16 bits in sRGB, in and out. The last line is `N passed, M failed`.
+TIFF of 16 bits in sRGB, in and out.
 """
 
 import os
 import subprocess
 
-from lut_client import Client, lut_test
+import pytest
+from lut_client import Client
 from lut_tables import trilinear
 from pictures import read_rgb
 
@@ -43,15 +44,11 @@ def through_rawtherapee(test, codes, hald):
     return read_rgb(out, test.scratch)
 
 
-def main(test):
+@pytest.mark.parametrize("client", [Client("RawTherapee", "rawtherapee-cli", "rawtherapee", "rawtherapee-cli -v")], ids=str)
+def test_hald(test):
     codes = test.picture("codes.tif")
     plain = through_rawtherapee(test, codes, None)
     test.report.compare("without a LUT: the picture itself", plain, test.codes, PIPELINE)
     hald, table, stated = test.hald("rawtherapee")
     shown = through_rawtherapee(test, codes, hald)
     test.compare("Hald CLUT of 36, 16 bits", shown, trilinear(table, test.flat), stated, PIPELINE)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("RawTherapee", "rawtherapee-cli", "rawtherapee",
-                                                    "rawtherapee-cli -v")))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """three.js in Chromium: its LUTCubeLoader and LUTPass with a .cube of `tonewright bake`, on WebGL 2 without a GPU.
 
-    python3 tests/parity/clients/test_threejs.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/clients/test_threejs.py --tonewright build/release/bin/tonewright
 
-three.js and what drives the browser come from npm, into the build folder. The last line is `N passed, M failed`.
+three.js and what drives the browser come from npm, into the build folder.
 """
 
 import json
@@ -12,10 +12,10 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-
-from lut_client import FLOAT32, HEIGHT, WIDTH, Client, lut_test
+import pytest
+from lut_client import FLOAT32, HEIGHT, WIDTH, Client
 from lut_tables import trilinear
-from pictures import run, skip
+from pictures import need_program, run, skip
 
 PACKAGES = ["three@0.187.0", "playwright-core@1.65.1"]
 
@@ -35,7 +35,10 @@ def npm_modules(build):
     return modules
 
 
-def main(test):
+@pytest.mark.parametrize("client", [Client("Chromium", "chromium", "chromium", "chromium --version")], ids=str)
+def test_cube(test):
+    need_program("node", "nodejs")
+    need_program("npm", "npm")
     cube, table, stated = test.cube("threejs")
     codes = np.concatenate([test.codes, np.ones((HEIGHT, WIDTH, 1), np.float32)], axis=-1)
     codes.astype("<f4").tofile(test.scratch / "codes.raw")
@@ -55,8 +58,3 @@ def main(test):
     bytes_ = np.floor(table * 255) / 255
     test.compare(".cube 33, as it is: bytes", shown["UnsignedByteType"], trilinear(bytes_, test.flat), stated + 1 / 255,
                  FLOAT32, clips=False)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("Chromium", "chromium", "chromium", "chromium --version"),
-                              needs=[("node", "nodejs"), ("npm", "npm")]))

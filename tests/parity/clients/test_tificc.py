@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """ICC device links of `tonewright bake` through LittleCMS (tificc) or ImageMagick, against the file and the operator.
 
-    python3 tests/parity/clients/test_tificc.py build/release/bin/tonewright tificc|convert
+    python3 -m pytest tests/parity/clients/test_tificc.py --tonewright build/release/bin/tonewright
 
-Both interpolate in tetrahedra, on 16 bits; so does `tonewright eval --lut`. The last line is `N passed, M failed`.
+Both interpolate in tetrahedra, on 16 bits; so does `tonewright eval --lut`.
 """
 
 import numpy as np
-
-from lut_client import BITS16, Client, lut_test
+import pytest
+from lut_client import BITS16, Client
 from lut_tables import tetrahedral
 from pictures import evaluate, read_rgb, run
 
@@ -23,7 +23,10 @@ def through_link(test, link, codes):
     return read_rgb(out, test.scratch)
 
 
-def main(test):
+@pytest.mark.parametrize("client", [
+    Client("LittleCMS 2.14, tificc", "tificc", "liblcms2-utils", "tificc"),
+    Client("ImageMagick", "convert", "imagemagick", "convert -version")], ids=str)
+def test_link(test):
     _, table, _ = test.cube("nuke")
     table = np.round(np.clip(table, 0, 1) * 65535) / 65535  # the nodes of the link have 16 bits
     expected = tetrahedral(table, test.flat)
@@ -34,8 +37,3 @@ def main(test):
         some = test.flat[::17]
         got = evaluate(test.command, some, "--lut", link, "--input-encoding", "none")
         test.report.compare(f"eval --lut: device link, version {version}", got, expected[::17], BITS16)
-
-
-if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("LittleCMS 2.14, tificc", "tificc", "liblcms2-utils", "tificc"),
-                              Client("ImageMagick", "convert", "imagemagick", "convert -version")))

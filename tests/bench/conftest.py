@@ -7,5 +7,6 @@ from pictures import PROJECT
 
 
 def pytest_addoption(parser):
-    parser.getgroup("tonewright").addoption("--program", type=Path, metavar="FILE", default=PROJECT / "build/release/bin/tonewright_instructions",
-                                            help="the program that runs operators (default: build/release/bin/tonewright_instructions)")
+    program = "build/release/bin/tonewright_instructions"
+    parser.getgroup("tonewright").addoption("--program", type=Path, metavar="FILE", default=PROJECT / program,
+                                            help=f"the program that runs operators (default: {program})")

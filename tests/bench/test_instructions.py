@@ -33,7 +33,8 @@ def count(program, operators, scratch):
     assert done.returncode == 0, done.stderr
     totals = [int(re.search(r"^(?:totals|summary): (\d+)", dump.read_text(), re.MULTILINE)[1])
               for dump in sorted(scratch.glob("calls.*"), key=lambda p: int(p.suffix[1:]))]
-    assert len(totals) >= len(operators) and min(totals[:len(operators)]) >= PIXELS, f"callgrind counted {totals} for {len(operators)} calls"
+    assert len(totals) >= len(operators) and min(totals[:len(operators)]) >= PIXELS, \
+        f"callgrind counted {totals} for {len(operators)} calls"
     return {name: total / PIXELS for name, total in zip(operators, totals)}
 def test_instructions(request, report, scratch):
     need_program("valgrind", "valgrind")

@@ -42,9 +42,9 @@ def main(tonewright: str) -> int:
             if row["backend"] == "glsl":
                 errors[names[0]][functions[row["operator"].replace(" look=", ":look=")]] = row["max_all"]
         for test, implementations in TESTS.items():
-            subprocess.run([sys.executable, "-m", "pytest", "-c", str(HERE.parent / "pytest.ini"), str(HERE / test), "--tonewright", tonewright,
-                            "--shaders", str(shaders), "--errors", str(folder / "errors.json")], check=True,
-                           env=os.environ | {"TONEWRIGHT_TEST_ALL": "1"})
+            subprocess.run([sys.executable, "-m", "pytest", "-c", str(HERE.parent / "pytest.ini"), str(HERE / test),
+                            "--tonewright", tonewright, "--shaders", str(shaders), "--errors", str(folder / "errors.json")],
+                           check=True, env=os.environ | {"TONEWRIGHT_TEST_ALL": "1"})
             recorded = json.loads((folder / "errors.json").read_text())
             for key, name in implementations.items():
                 names.append(name)

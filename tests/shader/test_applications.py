@@ -148,7 +148,7 @@ def test_files(request, report, command, scratch):
                 shown = resolve(text, function, scene)
                 np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(out)
             drawn[application, operator] = out, display
-    adapter = dawn.run(steps)
+    print(f"{dawn.run(steps)}, pocl")
     for (application, operator), (out, display) in drawn.items():
         shown = np.fromfile(out, np.float32).reshape(-1, 4)[:, :3].astype(float)
         expected = reference(command, operator, scene, "--display", display, "--exposure", str(STOPS))

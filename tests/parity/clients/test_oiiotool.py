@@ -1,29 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
 """oiiotool with the OpenColorIO config against `tonewright apply`: the same picture from both, for every operator.
 
-    python3 tests/parity/clients/test_oiiotool.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/clients/test_oiiotool.py --tonewright build/release/bin/tonewright
 
 Real pictures join the test chart where they are found, see pictures.shared_picture. The views are those of ocio_config/
-and, in a fresh config, a share of all operators. The last line is `N passed, M failed`.
+and, in a fresh config, a share of all operators.
 """
 
-import argparse
 import os
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+import pytest
+from pictures import (PROJECT, need_program, read_exr, read_planes, read_rgb, run, share_of, shared_picture, skip, stack, unstack, views,
+                      write_exr)
 
-from pictures import (PROJECT, Report, need_program, read_exr, read_planes, read_rgb, run, share_of,
-                      shared_picture, skip, stack, unstack, views, write_exr)
-
+SHIPPED = PROJECT / "ocio_config" / "config.ocio"
 # `apply` runs the SIMD engine, which may be 1e-6 from the double reference, and a chain of matrices, ranges and
 # half-domain curves in OpenColorIO may be 3e-7 from it: code values, on the other side of the reference at worst.
 EXACT = 3e-7 + 1e-6
 # Where a chain is not that exact, the config says by how much: the largest error of its README, which is that of
 # random colors. A picture may find more between them.
 BETWEEN_PROBES = 4
+
+
+@pytest.fixture(scope="module")
+def chart(command, tmp_path_factory):
+    """The test chart. Skips where oiiotool lacks OpenColorIO."""
+    need_program("oiiotool", "openimageio-tools")
+    if "OpenColorIO" not in run("oiiotool", "--help"):
+        skip("oiiotool was built without OpenColorIO")
+    path = tmp_path_factory.mktemp("chart") / "chart.exr"
+    run(command, "chart", "-o", path, "--width", 768, "--height", 432)
+    return path
 
 
 def bound_of(config, view):
@@ -95,10 +106,37 @@ def join(pictures, path, scratch):
     return parts
 
 
-def check_alpha(report, command, config, picture, scratch):
+def test_output_spaces(report, scratch, chart):
+    """Color spaces for write nodes and `--colorconvert` instead of views: the same pixels, and the inverse."""
+    names = ("AgX", "ACES 2.0", "Reinhard Extended")
+    spaces = [("--colorconvert", "Linear Rec.709", f"Output - {view} - sRGB") for view in names]
+    again = (*spaces[-1], "--colorconvert", "out_reinhard_extended_srgb", "lin_rec709",
+             "--colorconvert", "lin_rec709", "out_reinhard_extended_srgb")
+    *shown, there = through_oiiotool(SHIPPED, chart, scratch, *(("--ociodisplay", "sRGB", view) for view in names),
+                                     *spaces, again)
+    for view, displayed, converted in zip(names, shown, shown[len(names):]):
+        report.compare(f"--colorconvert to Output - {view} - sRGB", converted, displayed, 0)
+    report.compare("and back, and there again", there, shown[len(names) - 1], EXACT)
+
+
+@pytest.mark.usefixtures("chart")
+def test_negatives(report, command, scratch):
+    """Colors outside the display's gamut, NaN and infinities: both forms give the same finite picture."""
+    rng = np.random.default_rng(7)
+    rgb = (0.18 * 2.0 ** rng.uniform(-8, 8, (64, 64, 3)) * rng.choice([-1, 1], (64, 64, 3), p=[0.2, 0.8]))
+    rgb = rgb.astype(np.float32)
+    rgb[0, 0], rgb[0, 1], rgb[0, 2] = (np.nan, 0.18, 1), (np.inf, 0.18, -np.inf), (0.18, np.nan, np.inf)
+    write_exr(scratch / "special.exr", unstack(rgb))
+    for operator, view in (("hable", "Hable"), ("agx_sobotka", "AgX Sobotka")):
+        shown, = through_oiiotool(SHIPPED, scratch / "special.exr", scratch, ("--ociodisplay", "sRGB", view))
+        applied = through_apply(command, scratch / "special.exr", scratch, operator)
+        report.compare(f"negatives, NaN, infinities {operator}", shown, applied, EXACT)
+
+
+def check_alpha(report, command, picture, scratch):
     """Premultiplied color: `--ociodisplay:unpremult=1` divides by alpha, and `apply` does it on its own."""
     out = scratch / "alpha.exr"
-    run("oiiotool", picture, "--colorconfig", config, "--ociodisplay:unpremult=1", "sRGB", "Hable",
+    run("oiiotool", picture, "--colorconfig", SHIPPED, "--ociodisplay:unpremult=1", "sRGB", "Hable",
         "-d", "float", "--compression", "none", "-o", out)
     shown = read_exr(out)
     # oiiotool divides emission by its alpha, too.
@@ -107,76 +145,35 @@ def check_alpha(report, command, config, picture, scratch):
     report.compare(f"{picture.name} with alpha", stack(shown, "RGBA"), stack(applied, "RGBA"), EXACT)
 
 
-def check_output_spaces(report, config, picture, scratch):
-    """Color spaces for write nodes and `--colorconvert` instead of views: the same pixels, and the inverse."""
-    names = ("AgX", "ACES 2.0", "Reinhard Extended")
-    spaces = [("--colorconvert", "Linear Rec.709", f"Output - {view} - sRGB") for view in names]
-    again = (*spaces[-1], "--colorconvert", "out_reinhard_extended_srgb", "lin_rec709",
-             "--colorconvert", "lin_rec709", "out_reinhard_extended_srgb")
-    *shown, there = through_oiiotool(config, picture, scratch, *(("--ociodisplay", "sRGB", view) for view in names),
-                                     *spaces, again)
-    for view, displayed, converted in zip(names, shown, shown[len(names):]):
-        report.compare(f"--colorconvert to Output - {view} - sRGB", converted, displayed, 0)
-    report.compare("and back, and there again", there, shown[len(names) - 1], EXACT)
+@pytest.mark.usefixtures("chart")
+def test_alpha(report, command, scratch):
+    alpha = np.linspace(0, 1, 256, dtype=np.float32).reshape(16, 16)
+    ramp = alpha[..., None] * np.array([0.18, 1, 6], np.float32)
+    write_exr(scratch / "ramp.exr", {**unstack(ramp), "A": alpha})
+    check_alpha(report, command, scratch / "ramp.exr", scratch)
+    glow = shared_picture("CandleGlass.exr")  # light where alpha is 0: a flame
+    if glow:
+        check_alpha(report, command, glow, scratch)
 
 
-def check_negatives(report, command, config, scratch):
-    """Colors outside the display's gamut, NaN and infinities: both forms give the same finite picture."""
-    rng = np.random.default_rng(7)
-    rgb = (0.18 * 2.0 ** rng.uniform(-8, 8, (64, 64, 3)) * rng.choice([-1, 1], (64, 64, 3), p=[0.2, 0.8]))
-    rgb = rgb.astype(np.float32)
-    rgb[0, 0], rgb[0, 1], rgb[0, 2] = (np.nan, 0.18, 1), (np.inf, 0.18, -np.inf), (0.18, np.nan, np.inf)
-    write_exr(scratch / "special.exr", unstack(rgb))
-    for operator, view in (("hable", "Hable"), ("agx_sobotka", "AgX Sobotka")):
-        shown, = through_oiiotool(config, scratch / "special.exr", scratch, ("--ociodisplay", "sRGB", view))
-        applied = through_apply(command, scratch / "special.exr", scratch, operator)
-        report.compare(f"negatives, NaN, infinities {operator}", shown, applied, EXACT)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
-    need_program("oiiotool", "openimageio-tools")
-    if "OpenColorIO" not in run("oiiotool", "--help"):
-        skip("oiiotool was built without OpenColorIO")
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
-        scratch = Path(folder)
-        # Views of the shipped config on one display, a few on others; a share of all others in a config of their own.
-        shipped, fresh = PROJECT / "ocio_config" / "config.ocio", scratch / "config" / "config.ocio"
-        readme = (shipped.parent / "README.md").read_text()
-        jobs = [(operator, view, "srgb", "sRGB") for operator, view in views(command)]
-        jobs, others = ([job for job in jobs if (f"\n| {job[1]} |" in readme) == is_shipped] for is_shipped in (True, False))
-        others = share_of(others, 6)
-        extra = [("agx_sobotka", "AgX Sobotka", "display_p3", "Display P3"),
-                 ("aces_13", "ACES 1.3 - HDR 1000 nits", "rec2100_pq", "Rec.2100-PQ"),
-                 ("hable", "Hable", "p3d65_pq", "P3-D65 PQ"),
-                 ("uchimura", "Gran Turismo - HDR 1000 nits", "rec2100_hlg", "Rec.2100-HLG")]
-        run(command, "config", "-o", fresh.parent, "--views", ",".join(operator for operator, *_ in others),
-            "--displays", "srgb", "--looks", "none")
-        chart, joined = scratch / "chart.exr", scratch / "joined.exr"
-        run(command, "chart", "-o", chart, "--width", 768, "--height", 432)
-        pictures = list(filter(None, map(shared_picture, ("memorial.hdr", "Desk.exr"))))
-        parts = join([chart, *pictures], joined, scratch)
-        compare_views(report, command, shipped, joined, parts, scratch, jobs)
-        compare_views(report, command, fresh, joined, parts, scratch, others)
-        compare_views(report, command, shipped, chart, whole(chart, scratch), scratch, extra)
-        for picture in pictures:  # the files themselves: a space of their own, halfs, alpha
-            compare_views(report, command, shipped, picture, whole(picture, scratch), scratch, [
-                ("hable", "Hable", "display_p3", "Display P3")])
-        check_negatives(report, command, shipped, scratch)
-        check_output_spaces(report, shipped, chart, scratch)
-
-        alpha = np.linspace(0, 1, 256, dtype=np.float32).reshape(16, 16)
-        ramp = alpha[..., None] * np.array([0.18, 1, 6], np.float32)
-        write_exr(scratch / "ramp.exr", {**unstack(ramp), "A": alpha})
-        check_alpha(report, command, shipped, scratch / "ramp.exr", scratch)
-        glow = shared_picture("CandleGlass.exr")  # light where alpha is 0: a flame
-        if glow:
-            check_alpha(report, command, shipped, glow, scratch)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+def test_views(report, command, scratch, chart):
+    # Views of the shipped config on one display, a few on others; a share of all others in a config of their own.
+    fresh, joined = scratch / "config" / "config.ocio", scratch / "joined.exr"
+    readme = (SHIPPED.parent / "README.md").read_text()
+    jobs = [(operator, view, "srgb", "sRGB") for operator, view in views(command)]
+    jobs, others = ([job for job in jobs if (f"\n| {job[1]} |" in readme) == is_shipped] for is_shipped in (True, False))
+    others = share_of(others, 6)
+    extra = [("agx_sobotka", "AgX Sobotka", "display_p3", "Display P3"),
+             ("aces_13", "ACES 1.3 - HDR 1000 nits", "rec2100_pq", "Rec.2100-PQ"),
+             ("hable", "Hable", "p3d65_pq", "P3-D65 PQ"),
+             ("uchimura", "Gran Turismo - HDR 1000 nits", "rec2100_hlg", "Rec.2100-HLG")]
+    run(command, "config", "-o", fresh.parent, "--views", ",".join(operator for operator, *_ in others),
+        "--displays", "srgb", "--looks", "none")
+    pictures = list(filter(None, map(shared_picture, ("memorial.hdr", "Desk.exr"))))
+    parts = join([chart, *pictures], joined, scratch)
+    compare_views(report, command, SHIPPED, joined, parts, scratch, jobs)
+    compare_views(report, command, fresh, joined, parts, scratch, others)
+    compare_views(report, command, SHIPPED, chart, whole(chart, scratch), scratch, extra)
+    for picture in pictures:  # the files themselves: a space of their own, halfs, alpha
+        compare_views(report, command, SHIPPED, picture, whole(picture, scratch), scratch, [
+            ("hable", "Hable", "display_p3", "Display P3")])

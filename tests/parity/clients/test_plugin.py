@@ -1,26 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """tonewright.imageio.so in OpenImageIO's programs: the bits of `tonewright apply`, and never an abort of the host.
 
-    python3 tests/parity/clients/test_plugin.py build/release/bin/tonewright FOLDER_OF_THE_PLUGIN
+    python3 -m pytest tests/parity/clients/test_plugin.py --tonewright build/release/bin/tonewright --plugin build/release/lib/OpenImageIO-2.4
 
-Real pictures join where they are found, see pictures.shared_picture. The last line is `N passed, M failed`.
+Real pictures join where they are found, see pictures.shared_picture.
 """
 
-import argparse
 import os
 import subprocess
-import tempfile
 import threading
-from pathlib import Path
 
 import numpy as np
+import pytest
+from pictures import need_program, run, share_of, shared_picture, write_exr
 
-from pictures import Report, need_program, run, share_of, shared_picture, skip, write_exr
-
-try:
-    import OpenImageIO as oiio
-except ImportError:
-    skip("OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+need_program("oiiotool", "openimageio-tools")
 
 OPTIONS = {"op": "agx_sobotka", "exposure": "1", "display": "display_p3"}
 
@@ -78,7 +73,15 @@ def check_through_oiiotool(report, command, path, scratch, arguments, kind, exte
                  is_same(ours, theirs))
 
 
-def make_pictures(scratch):
+@pytest.fixture(scope="module")
+def scratch(plugin, tmp_path_factory):
+    """A folder for all tests. OpenImageIO finds the plugin."""
+    os.environ["OIIO_LIBRARY_PATH"] = str(plugin)
+    return tmp_path_factory.mktemp("plugin")
+
+
+@pytest.fixture(scope="module")
+def made(scratch):
     """Small ones of every layout."""
     rng = np.random.default_rng(5)
 
@@ -166,7 +169,12 @@ def check_structure(report, command, scratch, made):
     report.check("--iconfig tonewright:op", is_same(scratch / "ours.exr", scratch / "theirs.exr"))
 
 
-def check_errors(report, scratch, made):
+@pytest.mark.parametrize("check", share_of([check_bits, check_structure], 2))
+def test_pictures(report, command, scratch, made, check):
+    check(report, command, scratch, made)
+
+
+def test_errors(report, scratch, made, monkeypatch):
     """Each program says what is wrong and exits by itself: no signal, no abort."""
     half = made["half"].read_bytes()
     (scratch / "cut.exr").write_bytes(half[:len(half) // 2])
@@ -201,7 +209,7 @@ def check_errors(report, scratch, made):
               "secret.tonewright": "line 1 has an unknown name", "words.tonewright": "line 1 is not a setting",
               "d.tonewright": "gone.exr: cannot read", "e.tonewright": "not tone mapped yet",
               "f.tonewright": "expected name=value", "g.tonewright": "it has 70000 bytes; expected at most 65536"}
-    os.chdir(scratch)
+    monkeypatch.chdir(scratch)
     for bad, words in faults.items():
         image = oiio.ImageBuf(bad)
         image.read(force=True)
@@ -220,7 +228,7 @@ def check_errors(report, scratch, made):
     report.check("and no file is left", not (scratch / "never.exr").exists() and not (scratch / "never.tx").exists())
 
 
-def check_threads(report, command, scratch, made):
+def test_threads(report, command, scratch, made):
     for key in ("rgb", "tiled", "mip"):
         apply(command, made[key], scratch / "ours.exr", "float", **OPTIONS)
         oiio.ImageCache().invalidate(str(scratch / "ours.exr"))
@@ -247,33 +255,9 @@ def check_threads(report, command, scratch, made):
     report.check("Python, a tile at the corner", corner is not None and np.array_equal(corner[:6, :26], expected[64:, 64:]))
 
 
-def check_exports(report, folder):
+def test_exports(report, plugin):
     """Nothing but what OpenImageIO asks for."""
-    library = folder / "tonewright.imageio.so"
+    library = plugin / "tonewright.imageio.so"
     symbols = {line.split()[-1] for line in run("nm", "-D", "--defined-only", library).splitlines()}
     report.check("exports", symbols == {"tonewright_imageio_version", "tonewright_imageio_library_version",
                                         "tonewright_input_imageio_create", "tonewright_input_extensions"}, str(symbols))
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    parser.add_argument("plugin", type=Path, help="the folder that holds it")
-    arguments = parser.parse_args()
-    command, folder = arguments.command.resolve(), arguments.plugin.resolve()
-    need_program("oiiotool", "openimageio-tools")
-    os.environ["OIIO_LIBRARY_PATH"] = str(folder)
-    report = Report()
-    check_exports(report, folder)
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as temporary:
-        scratch = Path(temporary)
-        made = make_pictures(scratch)
-        for check in share_of([check_bits, check_structure], 2):
-            check(report, command, scratch, made)
-        check_errors(report, scratch, made)
-        check_threads(report, command, scratch, made)
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

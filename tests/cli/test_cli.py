@@ -583,7 +583,7 @@ def test_bake_warnings(report, command, scratch):
     def warnings(*arguments):
         path.unlink(missing_ok=True)
         code, _, err = call(command, ["bake", *arguments, "-o", path])
-        return code, [line for line in err.splitlines() if "warning" in line], err
+        return code, [line for line in err.splitlines() if "warning: " in line], err
 
     curve = ("--input-encoding", "log2")
     code, lines, err = warnings("drago", *curve, "--input", "lin_rec709", "--set", "apply=channels")

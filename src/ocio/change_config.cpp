@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "base/system_files.h"
 #include "ocio/extend.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

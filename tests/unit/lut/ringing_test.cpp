@@ -177,7 +177,7 @@ TEST(Ringing, FittedRaysTakeADentOut) {
     const LutRequest request = request_of("hable", "log2", "lin_rec709", "srgb", 33);
     Lut lut = sample_lut(request);
     lut.values[3 * ((20 * 33 + 20) * 33 + 20) + 1] -= 0.3F;
-    RayFit(lut, request, false, RayNodes::all).fit(lut, {.has_band = true});
+    RayFit(lut, request, LutInterpolation::tetrahedral, RayNodes::all).fit(lut, {.has_band = true});
     const LutRinging ringing = measure_ringing(lut, request);
     EXPECT_FALSE(rings(ringing)) << to_string(ringing);
     EXPECT_LE(ringing.p999, 0.02);
@@ -189,10 +189,11 @@ TEST(Ringing, RepairsSparePhotographs) {
     ASSERT_TRUE(rings(measure_ringing(fitted, request)));
     const double before = measure_lut(fitted, request).photographs.mean;
     Lut spared = fitted;
-    RayFit(fitted, request, false, RayNodes::unused).fit(spared, {});
+    RayFit(fitted, request, LutInterpolation::tetrahedral, RayNodes::unused).fit(spared, {});
     EXPECT_FALSE(rings(measure_ringing(spared, request)));
     Lut bent = fitted;
-    RayFit(fitted, request, false, RayNodes::all).fit(bent, {.has_band = true});
+    RayFit(fitted, request, LutInterpolation::tetrahedral, RayNodes::all)
+        .fit(bent, {.has_band = true});
     const double cost = measure_lut(spared, request).photographs.mean - before;
     const double cost_of_others = measure_lut(bent, request).photographs.mean - before;
     EXPECT_LT(cost, cost_of_others / 2);
@@ -207,7 +208,7 @@ TEST(Ringing, RepairsSparePhotographs) {
 TEST(Ringing, AFitWithinBoundsIsNearerThanARepairAfterIt) {
     const LutRequest request = request_of("agx_blender", "davinci", "lin_rec2020", "rec1886", 17);
     const Lut sampled = sample_lut(request);
-    const RayFit rays(sampled, request, false, RayNodes::unused);
+    const RayFit rays(sampled, request, LutInterpolation::tetrahedral, RayNodes::unused);
     int calls = 0;
     const Lut bound = fit_lut(request, sampled, 0.8, [&](Lut& lut) {
         ++calls;

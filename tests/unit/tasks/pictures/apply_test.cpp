@@ -77,7 +77,7 @@ TEST_F(ApplyFiles, LutGetsEncodedColors) {
                                  .resize = {},
                                  .write = {},
                                  .nthreads = 1};
-    request.write.says_how = true;
+    request.write.write_provenance = true;
     write_through_lut(source, {"a.exr", file("out.exr")}, request);
     const OIIO::ImageBuf written = read_image(file("out.exr"));
     EXPECT_NE(written.spec()["Software"].get().find("LUT identity.cube"), std::string::npos);

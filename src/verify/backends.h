@@ -20,7 +20,7 @@ using ColorRun = std::function<void(const float* in, float* out, std::size_t cou
 
 struct BackendInput {
     const View& view;
-    /// Of the view, or of its inverse.
+    /// The stages of the view, or of its inverse.
     const Pipeline& pipeline;
     /// OpenColorIO's backends run it; null: they lower the pipeline.
     OCIO::ConstProcessorRcPtr processor = nullptr;

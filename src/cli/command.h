@@ -73,7 +73,8 @@ void warn_of(const ResolvedOperator& op);
 /// $XDG_CACHE_HOME, else in ~/.cache. Empty if neither is an absolute path.
 [[nodiscard]] std::string user_cache_folder();
 
-/// Each subcommand has its own file and adds itself to the command line.
+/// Each subcommand adds itself to the command line, in the file of its name; compare.cpp also has
+/// `sheet` and `chart`, meter.cpp `info`.
 void add_list(CommandLine& program);
 void add_eval(CommandLine& program);
 void add_apply(CommandLine& program);

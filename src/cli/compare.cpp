@@ -97,4 +97,63 @@ void add_compare(CommandLine& program) {
     });
 }
 
+void add_sheet(CommandLine& program) {
+    auto options = std::make_shared<SheetOptions>();
+    const Command command =
+        program.add("sheet", "Arrange pictures with labels on a contact sheet.");
+    command.group("Pictures");
+    const char* const group = "Output";
+    command.add("pictures", options->pictures, "LABEL=FILE: label and display-encoded picture")
+        .required();
+    command.add("-o", options->file, "file to write").value("FILE").required().group(group);
+    command.add("--columns", options->columns, "pictures in a row")
+        .value("N")
+        .show_default()
+        .range(1, 100)
+        .group(group);
+    command.add("--cell-width", options->cell_width, "width of a picture in pixels")
+        .value("N")
+        .show_default()
+        .range(16, 16384)
+        .group(group);
+    add_picture_choice(command, options->choice, "Pictures");
+    command.footer("Example:\n  tonewright sheet -o sheet.png Hable=hable.png AgX=agx.png");
+    command.action([options] {
+        const ResultLine line;
+        picture_commands().sheet(*options);
+        line.print(fmt::format("sheet: {}: {} pictures", options->file, options->pictures.size()));
+        return kOk;
+    });
+}
+
+void add_chart(CommandLine& program) {
+    auto options = std::make_shared<ChartOptions>();
+    const Command command =
+        program.add("chart", "Write the synthetic HDR test chart, in scene-linear Rec.709.");
+    command.group("Pictures");
+    const char* const group = "Output";
+    command.add("-o", options->file, "file to write (.exr)").value("FILE").required().group(group);
+    command.add("--width", options->width, "width in pixels")
+        .value("N")
+        .show_default()
+        .group(group);
+    command.add("--height", options->height, "height in pixels")
+        .value("N")
+        .show_default()
+        .group(group);
+    command.add("-d", options->type, "pixel type: half or float")
+        .value("TYPE")
+        .suggest({"half", "float"})
+        .show_default()
+        .group(group);
+    command.footer("Example:\n  tonewright chart -o chart.exr");
+    command.action([options] {
+        const ResultLine line;
+        picture_commands().chart(*options);
+        line.print(fmt::format("chart: {} ({} x {} {})", options->file, options->width,
+                               options->height, options->type));
+        return kOk;
+    });
+}
+
 TONEWRIGHT_NAMESPACE_END

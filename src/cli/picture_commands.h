@@ -62,6 +62,6 @@ extern "C" const PictureCommands* tonewright_picture_commands(const char* build)
 inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
 /// The release, and the number of this interface: increase it with every change of the interface
 /// or of the options.
-inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 9";
+inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 10";
 
 TONEWRIGHT_NAMESPACE_END

@@ -523,7 +523,7 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     return result;
 }
 
-/// How picture files are read, tone mapped and written.
+/// Options for reading, tone mapping and writing picture files.
 struct FileOptions {
     TonemapOptions tonemap;
     ReadOptions read;

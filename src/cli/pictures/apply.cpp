@@ -452,7 +452,9 @@ int apply_to_picture(Tonemapper& tonemapper, const ApplyOptions& options,
         if (exposure.rule) metered = meter_files(files, exposure);
         if (options.has_legend) {
             if (file.exposure_stops) tonemapper = tonemapper.with_exposure(*file.exposure_stops);
-            write_with_legend(tonemapper, read_picture(file.in, sequence.read, options.input), file,
+            ReadOptions unchanged = sequence.read;
+            unchanged.resize.clear();  // write_with_legend() resizes
+            write_with_legend(tonemapper, read_picture(file.in, unchanged, options.input), file,
                               sequence.write, sequence.read, sequence.nthreads);
         } else {
             tonemap_pictures(tonemapper, files, sequence, options.picture.timeout);

@@ -250,7 +250,8 @@ std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterRe
     return all;
 }
 
-/// What the header of a single picture says; frames of a shot say the same, and are many.
+/// Prints messages about the header of a single picture. Frames of a shot have the same ones, and
+/// are many.
 void tell_header(const std::string& path, const MeterCommandOptions& options) {
     PictureMessages messages(path);
     ReadOptions read = read_options_of(options.picture);

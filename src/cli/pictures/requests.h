@@ -21,7 +21,7 @@ void use_threads(const PictureInput& input);
 /// @throws Error  --resize is a size that no picture can have
 void check_resize(const char* command, const std::string& resize, const PictureChoice& choice);
 
-/// What a picture's numbers mean. @see TonemapOptions
+/// The meaning of a picture's numbers. @see TonemapOptions
 struct MeteredInput {
     std::string space;
     std::string units;

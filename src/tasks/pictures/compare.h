@@ -35,7 +35,7 @@ struct ComparisonRequest {
     /// @see ReadOptions
     std::string resize = {};
     double max_pixels = kMaxPixels;
-    /// Of a sheet. 0: as fits.
+    /// Pictures in a row of the sheet. 0: the number that fits a screen.
     int columns = 0;
     int cell_width = 480;
     /// Adds the absolute difference of two operators in code values, times this.

@@ -30,8 +30,8 @@ struct ExtendedConfig {
     std::string text;
     /// Names of the added items, by kind: "view transform", "look", "view", "color space".
     std::vector<ChangedConfig::Added> added;
-    /// What `check` cannot run, because the profile of the config is newer than those that the
-    /// linked OpenColorIO reads; empty: nothing. One line.
+    /// One line about the items that `check` cannot run, because the profile of the config is newer
+    /// than those that the linked OpenColorIO reads; empty: it can run all.
     std::string unchecked;
     /// @see ConfigPlan::warnings
     std::vector<std::string> warnings;

@@ -247,15 +247,15 @@ int apply_lut(const ApplyOptions& options, const ApplyFiles& files) {
             .resize = options.resize,
             .write = write,
             .nthreads = options.picture.threads};
-        messages.hear(request.write);
-        request.write.warn = [hear = request.write.warn](const std::string& text) {
+        messages.attach_to(request.write);
+        request.write.warn = [sink = request.write.warn](const std::string& text) {
             // The LUT decides the display.
             const MessageStyle style = {
                 .setting = [](std::string_view parameter, std::string_view value) {
                     const std::string option = command_style().setting(parameter, value);
                     return parameter == "display" ? "a LUT that is baked with " + option : option;
                 }};
-            hear(render(text, style));
+            attach_to(render(text, style));
         };
         {
             const QuietStderr quiet;
@@ -404,8 +404,8 @@ int apply_to_shot(Tonemapper& tonemapper, const ApplyOptions& options, const Fra
     }
     quiet.reset();
     PictureMessages messages(pattern.in, pattern.out);
-    messages.hear(sequence.read);
-    messages.hear(sequence.write);
+    messages.attach_to(sequence.read);
+    messages.attach_to(sequence.write);
     sequence.skip_existing = options.frames.skip_existing;
     sequence.jobs = options.frames.jobs;
     run(tonemapper, shot.frames, sequence, options, messages, "frames");
@@ -421,8 +421,8 @@ int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
         warn_of_histograms(meter_files(files, exposure), *exposure.rule, {.warn = warn});
     tell_default_operator(options);
     PictureMessages messages;
-    messages.hear(sequence.read);
-    messages.hear(sequence.write);
+    messages.attach_to(sequence.read);
+    messages.attach_to(sequence.write);
     sequence.names_pictures = true;
     run(tonemapper, files, sequence, options, messages, "pictures");
     const std::size_t failed = print_failures(files);
@@ -439,8 +439,8 @@ int apply_to_picture(Tonemapper& tonemapper, const ApplyOptions& options,
     FrameFiles& file = files.front();
     remove_leftovers({file.out});
     PictureMessages messages(file.in, file.out);
-    messages.hear(sequence.read);
-    messages.hear(sequence.write);
+    messages.attach_to(sequence.read);
+    messages.attach_to(sequence.write);
     std::optional<OIIO::ImageSpec> header;
     sequence.read.header = [&](const OIIO::ImageSpec& spec) { header = spec; };
     const ExposureRequest exposure = exposure_request_of(options, tonemapper.options());

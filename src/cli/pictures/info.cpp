@@ -42,8 +42,8 @@ std::string text_of_white(const Chromaticity& white) {
     return fmt::format("{:.4f} {:.4f}", white.x, white.y);
 }
 
-void print_json(const std::string& path, const PictureInfo& told) {
-    const auto& [spec, said, choices] = told;
+void print_json(const std::string& path, const PictureInfo& info) {
+    const auto& [spec, said, choices] = info;
     const Primaries& p = said.color.primaries;
     Json primaries = Json::array({p.red.x, p.red.y, p.green.x, p.green.y, p.blue.x, p.blue.y});
     fmt::print("{}\n", Json{{"file", path},
@@ -66,8 +66,8 @@ void print_json(const std::string& path, const PictureInfo& told) {
                            .dump());
 }
 
-void print_text(const std::string& path, const PictureInfo& told) {
-    const auto& [spec, said, choices] = told;
+void print_text(const std::string& path, const PictureInfo& info) {
+    const auto& [spec, said, choices] = info;
     constexpr std::array kTurned = {"upright",
                                     "mirrored",
                                     "turned by 180 degrees",
@@ -101,16 +101,16 @@ void print_text(const std::string& path, const PictureInfo& told) {
 
 void run_info(const InfoOptions& options) {
     for (const std::string& path : options.pictures) {
-        PictureInfo told = [&] {
+        PictureInfo info = [&] {
             const QuietStderr quiet;
             return read_picture_info(path, read_options_of(options.choice), options.input);
         }();
-        for (std::vector<std::string>* texts : {&told.said.ignored, &told.choices}) {
+        for (std::vector<std::string>* texts : {&info.said.ignored, &info.choices}) {
             for (std::string& text : *texts)
                 text = render(text, command_style());
         }
-        told.said.rule = render(told.said.rule, command_style());
-        options.json ? print_json(path, told) : print_text(path, told);
+        info.said.rule = render(info.said.rule, command_style());
+        options.json ? print_json(path, info) : print_text(path, info);
     }
 }
 

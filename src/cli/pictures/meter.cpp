@@ -255,7 +255,7 @@ std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterRe
 void tell_header(const std::string& path, const MeterCommandOptions& options) {
     PictureMessages messages(path);
     ReadOptions read = read_options_of(options.picture);
-    messages.hear(read);
+    messages.attach_to(read);
     {
         const QuietStderr quiet;
         const PictureReader reader(path, 1, read);

@@ -83,7 +83,7 @@ void PictureMessages::add_finished(const std::string& text, std::size_t at) {
     finished_[reason].insert(picture);
 }
 
-void PictureMessages::hear(ReadOptions& read) {
+void PictureMessages::attach_to(ReadOptions& read) {
     read.warn = [this](const std::string& text) {
         const std::size_t at = text.find(kFinishedPicture);
         at == std::string::npos ? add(reading_, in_, text) : add_finished(text, at);
@@ -94,7 +94,7 @@ void PictureMessages::hear(ReadOptions& read) {
     };
 }
 
-void PictureMessages::hear(WriteOptions& write) {
+void PictureMessages::attach_to(WriteOptions& write) {
     write.warn = [this](const std::string& text) { add(writing_, out_, text); };
 }
 
@@ -118,7 +118,7 @@ OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice
                             std::string_view input) {
     PictureMessages messages(path);
     ReadOptions read = read_options_of(choice);
-    messages.hear(read);
+    messages.attach_to(read);
     OIIO::ImageBuf picture = [&] {
         const QuietStderr quiet;
         return read_picture(path, read, input);

@@ -41,8 +41,8 @@ class PictureMessages {
         : in_(std::move(in)), out_(std::move(out)) {}
     /// Sets callbacks to this object, which must live as long as they do. They throw an Error of
     /// kind `check` for a warning if --strict was given.
-    void hear(ReadOptions& read);
-    void hear(WriteOptions& write);
+    void attach_to(ReadOptions& read);
+    void attach_to(WriteOptions& write);
     void print();
 
   private:

@@ -118,7 +118,7 @@ std::string frame_name(const char* parameter, const std::string& pattern, int fr
     std::string name;
     std::size_t from = 0;
     for (const Place& place : places_of_number(pattern)) {
-        // As printf does, the sign is one of the digits.
+        // The sign is one of the digits, as it is in printf.
         name +=
             pattern.substr(from, place.begin - from) + fmt::format("{:0{}d}", frame, place.width);
         from = place.begin + place.length;

@@ -77,6 +77,10 @@ PARTS = {
     "engine/curve_fit": "engine/compiled_curve",
     "formula/glsl_cursor": "formula/glsl", "formula/glsl_frames": "formula/glsl", "formula/glsl_parser": "formula/glsl",
 }
+# Front ends put the command's name before a message.
+COMMAND = re.compile(r'"(?:apply|bake|chart|check|compare|config|eval|import|info|list|meter|plot|report|shader|sheet|verify): ')
+# It names the config that a row of the parity table is about.
+NO_COMMAND = {"verify/verify.cpp"}
 LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
 
 
@@ -120,6 +124,8 @@ def main(src: pathlib.Path) -> int:
                 file = path.relative_to(src).as_posix()
                 failures += [f"{file}:{number}: a text has the option --{option}; expected <<PARAMETER=VALUE>>"
                              for option in options_in(line, options) if (file, option) not in GENERATED]
+                if COMMAND.search(line) and file not in NO_COMMAND:
+                    failures.append(f"{file}:{number}: a text begins with a command's name; front ends put it there")
             match = re.match(r'\s*#\s*include\s*([<"])([^>"]+)[>"]', line)
             if not match:
                 continue

@@ -80,7 +80,8 @@ const MessageStyle& command_style() {
             if (parameter == "list")
                 return fmt::format("`tonewright list{}`", value == "inputs" ? " --inputs" : "");
             if (parameter == "dimension") return fmt::format("--{}", value);
-            if (parameter == "target") return std::string("-o");
+            if (parameter == "target")
+                return std::string(value.empty() ? "-o" : "-o ") + std::string(value);
             if (parameter == "settings") return fmt::format("--set {}=...", value);
             const std::string option = option_of(parameter);
             return value.empty() || value == "yes" ? option : fmt::format("{} {}", option, value);

@@ -264,8 +264,10 @@ const std::string& lut_steps_of(const LutApplication& application, LutFormat for
 
 void check_lut_size(const LutApplication& application, int size) {
     if (size <= application.largest_size) return;
-    throw Error(fmt::format("bake: size is {}; expected at most {} for {}", size,
-                            application.largest_size, application.id));
+    throw Error(
+        {.parameter = "size",
+         .value = fmt::to_string(size),
+         .expected = fmt::format("at most {} for {}", application.largest_size, application.id)});
 }
 
 bool is_table_for(const LutApplication& application, const View& view) {

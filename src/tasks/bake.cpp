@@ -22,8 +22,9 @@ void require_lut_picture(const std::string& path, int bits) {
     const bool is_tiff = extension == ".tif" || extension == ".tiff";
     const bool is_held = is_tiff || (bits == 32 ? extension == ".exr" : extension == ".png");
     if (!is_held) {
-        throw Error(fmt::format("bake: file is {}; expected {} or .tif for {} bits", path,
-                                bits == 32 ? ".exr" : ".png", bits));
+        throw Error(Problem{
+            .value = fmt::format("file is {}", path),
+            .expected = fmt::format("{} or .tif for {} bits", bits == 32 ? ".exr" : ".png", bits)});
     }
 }
 
@@ -74,10 +75,10 @@ void bake_chain(const BakeRequest& given, BakeResult& result) {
     LutChain chain = make_lut_chain(result.request, given.nodes, given.cache_folder);
     const PhotographError& photographs = chain.error.photographs;
     if (given.max_error && photographs.p999 > *given.max_error) {
-        throw Error(fmt::format(
-            "bake: max error is {}; expected at least {}, which {} has on "
-            "photographs",
-            shortest(*given.max_error), rounded_up(photographs.p999), chain.operations));
+        throw Error({.parameter = "max_error",
+                     .value = shortest(*given.max_error),
+                     .expected = fmt::format("at least {}, which {} has on photographs",
+                                             rounded_up(photographs.p999), chain.operations)});
     }
     write_text_atomically(given.file, chain.contents);
     result.operations = std::move(chain.operations);
@@ -133,8 +134,9 @@ LutRequest lut_request_of(const BakeRequest& given, LutFormat format) {
     request.bits = given.depth;
     request.decimals = given.decimals;
     if (given.icc_version && format != LutFormat::icc) {
-        throw Error(fmt::format(
-            "bake: <<icc_version>> is given for {}; expected format icc with it", name_of(format)));
+        throw Error(
+            Problem{.value = fmt::format("<<icc_version>> is given for {}", name_of(format)),
+                    .expected = "format icc with it"});
     }
     if (given.icc_version && *given.icc_version != 2 && *given.icc_version != 4) {
         throw Error({.parameter = "icc_version",
@@ -150,10 +152,8 @@ LutRequest lut_request_of(const BakeRequest& given, LutFormat format) {
     if (given.size && !is_table && format == host->format) check_lut_size(*host, *given.size);
     if (given.format) return request;
     if (given.max_error && is_strip(host->format)) {
-        throw Error(
-            fmt::format("bake: <<max_error>> is given for {}; expected none, because its size is "
-                        "{}",
-                        host->id, host->size));
+        throw Error(Problem{.value = fmt::format("<<max_error>> is given for {}", host->id),
+                            .expected = fmt::format("none, because its size is {}", host->size)});
     }
     if (!given.depth) request.bits = host->bits;
     if (is_table) return request;

@@ -48,10 +48,8 @@ ShaderResult write_shader_files(const ShaderRequest& request, const std::string&
                         shader.function, rounded_up(shader.errors.in_float)));
     }
     if (!shader.textures.empty() && file.empty()) {
-        throw Error(
-            fmt::format("shader: {} has a texture; expected -o FILE, beside which it is "
-                        "written",
-                        shader.function));
+        throw Error(Problem{.value = fmt::format("{} has a texture", shader.function),
+                            .expected = "<<target=FILE>>, beside which it is written"});
     }
     if (file.empty()) return result;
     for (const auto& [path, contents] : texture_files(shader, file)) {

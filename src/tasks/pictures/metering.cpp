@@ -123,7 +123,7 @@ void MeteredShot::require_all() const {
     for (const MeteredPicture& picture : pictures) {
         if (!picture.problem) continue;
         throw_problem({.kind = picture.problem->kind,
-                       .what = "meter: " + unrendered(*picture.problem),
+                       .what = unrendered(*picture.problem),
                        .expected = "all frames of the shot, the others depend on it",
                        .error_number = picture.problem->error_number});
     }

@@ -46,8 +46,8 @@ OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture, const SourceColor&
 
 std::vector<float> light_pixels(const OIIO::ImageBuf& picture, const std::string& path) {
     if (picture.nchannels() < 3) {
-        throw FileError(fmt::format("verify: picture {} has {} channels; expected 3", path,
-                                    picture.nchannels()));
+        throw FileError(
+            fmt::format("{}: it has {} channels; expected 3", path, picture.nchannels()));
     }
     const SourceColor source =
         about_picture(path, [&] { return source_color(picture.spec(), kAutoInput); });

@@ -28,14 +28,14 @@ std::string encoded(const std::vector<float>& rgb, int width, int height, const 
                     const OIIO::TypeDesc& type) {
     OIIO::Filesystem::IOVecOutput memory;  // before what writes to it until it ends
     const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(name);
-    if (!out) throw FileError("report: " + first_line(OIIO::geterror()));
+    if (!out) throw FileError(Problem{.value = first_line(OIIO::geterror())});
     OIIO::ImageSpec spec(width, height, 3, type);
     spec.attribute("compression", type == OIIO::TypeUInt8 ? "zip:9" : "zip");
     // The writer of OpenEXR would record the current time, and each page would have other bytes.
     if (type == OIIO::TypeHalf) spec.attribute("DateTime", date_text(0));
     out->set_ioproxy(&memory);
     if (!out->open(name, spec) || !out->write_image(OIIO::TypeFloat, rgb.data()) || !out->close())
-        throw FileError("report: " + first_line(out->geterror()));
+        throw FileError(Problem{.value = first_line(out->geterror())});
     return {memory.buffer().begin(), memory.buffer().end()};
 }
 
@@ -84,8 +84,7 @@ ReportPicture make_report_picture(const ReportPictureRequest& request) {
         const OIIO::ImageBuf shown = tonemap(halves, tonemap_options);
         std::vector<float> codes(rgb.size());
         if (shown.has_error() || !shown.get_pixels(shown.roi(), OIIO::TypeFloat, codes.data()))
-            throw FileError(
-                fmt::format("report: {}: {}", operator_text(op), first_line(shown.geterror())));
+            throw FileError(fmt::format("{}: {}", operator_text(op), first_line(shown.geterror())));
         result.shown.push_back(
             encoded(codes, result.width, result.height, "shown.png", OIIO::TypeUInt8));
     }

@@ -81,18 +81,18 @@ TEST(BakeTask, RefusesContradictions) {
     BakeRequest request = request_for("agx_sobotka");
     request.icc_version = 4;
     EXPECT_EQ(error_of([&] { (void)lut_request_of(request, LutFormat::cube); }),
-              "bake: icc_version is given for cube; expected format icc with it");
+              "icc_version is given for cube; expected format icc with it");
     request.icc_version = 3;
     EXPECT_EQ(error_of([&] { (void)lut_request_of(request, LutFormat::icc); }),
               "icc version is 3; expected 2 or 4");
     request = request_for("agx_sobotka", "unreal");
     request.max_error = 0.1;
     EXPECT_EQ(error_of([&] { (void)lut_request_of(request, LutFormat::strip); }),
-              "bake: max_error is given for unreal; expected none, because its size is 16");
+              "max_error is given for unreal; expected none, because its size is 16");
     request = request_for("agx_sobotka", "resolve");
     request.size = 129;
     EXPECT_EQ(error_of([&] { (void)lut_request_of(request, request.application->format); }),
-              "bake: size is 129; expected at most 65 for resolve");
+              "size is 129; expected at most 65 for resolve");
 }
 
 TEST(BakeTask, WritesTheFileAndTellsTheErrors) {
@@ -146,7 +146,7 @@ TEST(BakeTask, PictureIsForTheCallerToWrite) {
     EXPECT_EQ(written, (std::vector<int>{16, 16}));
     request.file = folder / "a.exr";
     EXPECT_EQ(error_of([&] { (void)baked(request); }),
-              "bake: file is " + request.file + "; expected .png or .tif for 16 bits");
+              "file is " + request.file + "; expected .png or .tif for 16 bits");
 }
 
 TEST(BakeTask, StepsAreForTheFile) {

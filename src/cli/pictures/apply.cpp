@@ -255,7 +255,7 @@ int apply_lut(const ApplyOptions& options, const ApplyFiles& files) {
                     const std::string option = command_style().setting(parameter, value);
                     return parameter == "display" ? "a LUT that is baked with " + option : option;
                 }};
-            attach_to(render(text, style));
+            sink(render(text, style));
         };
         {
             const QuietStderr quiet;

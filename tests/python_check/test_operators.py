@@ -219,7 +219,7 @@ def test_filament_bound(report):
         light = np.where((difference(moved) > largest)[:, None], moved, light)
         largest = difference(light)
     source = (PROJECT / "src" / "operators" / "aces_fits.cpp").read_text()
-    bound = float(re.search(r"op\.id = \"aces_filament\";.*?\.cube = ([0-9.e-]+)", source, re.DOTALL)[1])
+    bound = float(re.search(r"op\.id = \"aces_filament\";.*?\.lut3d = ([0-9.e-]+)", source, re.DOTALL)[1])
     report.bound("aces_filament: what another hue weight makes of any color", largest.max(), bound)
     report.bound("aces_filament: the declared bound is not above it by more than a hundredth", bound / largest.max() - 1, 0.01)
 

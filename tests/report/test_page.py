@@ -19,7 +19,7 @@ import pytest
 from chromium import Page
 from executed import IS_FULL, colors, pick, reference
 
-# A lattice, tables, a table in steps, branches, a hue structure, a measuring operator, a local one.
+# A grid, tables, a table in steps, branches, a hue structure, a measuring operator, a local one.
 OPERATORS = ["agx_blender", "aces_20", "camera_response", "hable", "khronos_neutral", "gt7", "reinhard:luminance", "uchimura", "drago",
              "exposure_fusion"]
 MOST_BYTES = 3_000_000  # without pictures; the embedded chart is part of it here

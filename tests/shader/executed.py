@@ -66,7 +66,7 @@ class Comparison:
         self.rows = {}  # language -> rows of the manifest, of a dozen operators unless in full
         for row in csv.DictReader(open(shaders / "MANIFEST.csv")):
             self.rows.setdefault(row["path"].split("/")[0], []).append(row)
-        names = [row["operator"] for row in self.rows["dctl"]]  # DCTL holds no lattices
+        names = [row["operator"] for row in self.rows["dctl"]]  # DCTL holds no grids
         dozen = pick(names, 11) + ["agx_blender"]
         if not IS_FULL:
             self.rows = {key: [row for row in rows if row["operator"] in dozen] for key, rows in self.rows.items()}

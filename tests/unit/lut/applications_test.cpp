@@ -43,7 +43,7 @@ TEST(LutApplications, ARefusedSizeIsOneLineWithTheLargest) {
         check_lut_size(find_lut_application("resolve"), 129);
         FAIL();
     } catch (const Error& e) {
-        EXPECT_STREQ(e.what(), "bake: size is 129; expected at most 65 for resolve");
+        EXPECT_STREQ(e.what(), "size is 129; expected at most 65 for resolve");
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -37,10 +38,12 @@ const PictureCommands& load() {
     const auto fail = [&](const std::string& reason) {
         throw FileError("start: cannot load the picture commands: " + reason);
     };
+    const std::optional<double> limit = address_limit();
+    // Each further arena of malloc reserves 64 to 128 MB of addresses for a thread.
+    if (limit) ::mallopt(M_ARENA_MAX, 1);
     void* module = ::dlopen(path.c_str(), kBinding);
     // A module that is there does not load for lack of addresses, where they are limited.
-    if (const std::optional<double> limit = address_limit();
-        !module && limit && ::access(path.c_str(), R_OK) == 0) {
+    if (!module && limit && ::access(path.c_str(), R_OK) == 0) {
         fail(
             fmt::format("not enough memory; expected more addresses than the limit of {:.0f} MB "
                         "(ulimit -v)",

@@ -28,12 +28,12 @@ for folder, direct in {
     "ocio": ["lut"],
     "image": ["lut"],
     "verify": ["ocio", "shader"],
-    "report": ["verify"],
+    "report": ["base"],  # the page as a file
     "plot": ["engine"],
     "shader_runs": ["verify"],
-    "tasks": ["verify"],  # what the command and the Python module do
+    "tasks": ["report", "verify"],  # what the command and the Python module do
     "tasks/pictures": ["tasks", "image"],
-    "cli": ["report", "plot", "tasks", "shader_runs"],
+    "cli": ["plot", "tasks", "shader_runs"],
     "cli/pictures": ["cli", "tasks/pictures"],  # the module that the program loads
     "tools": ["cli"],
     "plugin": ["image"],

@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_file.h"
+#include "tonewright/ocio.h"
 #include "tonewright/registry.h"
 
 #include <cstdlib>
@@ -115,6 +116,12 @@ const OperatorSet& operator_files() {
                                    }),
                                    OperatorSet::Formulas::yes);
     return files;
+}
+
+void print_opencolorio_messages() {
+    redirect_opencolorio_messages([](const std::string& text) {
+        if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
+    });
 }
 
 ResolvedOperator resolve_for_command(const std::string& text, const Settings& settings,

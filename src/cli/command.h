@@ -69,6 +69,9 @@ void warn_of(const ResolvedOperator& op);
                                                    const Settings& settings = {},
                                                    const std::string& look = {});
 
+/// Prints the messages of OpenColorIO, not with --quiet.
+void print_opencolorio_messages();
+
 /// The folder of the user for numbers that take seconds to compute: `tonewright` in
 /// $XDG_CACHE_HOME, else in ~/.cache. Empty if neither is an absolute path.
 [[nodiscard]] std::string user_cache_folder();

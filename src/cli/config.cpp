@@ -77,9 +77,7 @@ int run_config(Options& options) {
             {options.names[i], resolve_operator(options.operators[i], {}, {}, operator_files())});
     wanted.others = operator_files();
     wanted.cache_folder = user_cache_folder();
-    redirect_opencolorio_messages([](const std::string& text) {
-        if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
-    });
+    print_opencolorio_messages();
     if (!options.into.empty()) {
         change_existing(options);
         return kOk;

@@ -4,18 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "cli/command.h"
-#include "cli/json_forms.h"
 #include "cli/list.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/suggestions.h"
 #include "tasks/json.h"
+#include "tasks/json_forms.h"
 #include "tonewright/definition.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -26,104 +25,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-std::string output_of(const Operator& op) {
-    if (op.display) {
-        const std::string display = resolve(op, nullptr, {}, "").output_display();
-        return display.empty() ? "display-linear" : "code values of " + find_display(display).title;
-    }
-    if (op.output == OutputKind::display_linear) return "display-linear";
-    return fmt::format("code values, power {}", op.code_power);
-}
-
 using Kind = ParameterSpec::Kind;
-
-std::string_view kind_name(Kind kind) {
-    switch (kind) {
-        case Kind::number:
-            return "number";
-        case Kind::choice:
-            return "choice";
-        case Kind::text:
-            break;
-    }
-    return "text";
-}
-
-/// The operator's own warnings, and those from its deviations.
-std::vector<std::string> all_warnings(const Operator& op) {
-    std::vector<std::string> all = op.warnings;
-    for (const DocumentedDifference& d : op.differences)
-        all.push_back(to_string(d));
-    return all;
-}
-
-/// JSON has no infinity.
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json to_json(const ParameterSpec& p, bool is_live) {
-    Json j = {{"name", p.name}, {"kind", kind_name(p.kind)}, {"unit", p.unit}};
-    if (p.kind == Kind::number) {
-        j.add("default", p.default_value);
-        j.add("min", number_or_null(p.min));
-        j.add("max", number_or_null(p.max));
-        j.add("live", is_live);
-    } else {
-        j.add("default", p.default_choice);
-    }
-    j.add("choices", p.choices);
-    j.add("help", p.help);
-    if (p.from_picture) j.add("statistic", p.statistic);
-    j.add("decided_by_display", p.from_display != nullptr);
-    return j;
-}
-
-}  // namespace
-
-Json to_json(const Operator& op) {
-    Json parameters = Json::array();
-    const std::vector<std::string> live = live_parameters(op);
-    for (const ParameterSpec& p : op.parameters)
-        parameters.push_back(to_json(p, std::find(live.begin(), live.end(), p.name) != live.end()));
-    Json deviations = Json::array();
-    for (const DocumentedDifference& d : op.differences) {
-        deviations.push_back({{"kind", difference_names().at(static_cast<std::size_t>(d.kind))},
-                              {"value", number_or_null(d.value)},
-                              {"when", d.when},
-                              {"text", to_string(d)}});
-    }
-    Json presets = Json::array();
-    for (const Preset& p : op.presets)
-        presets.push_back({{"id", p.id}, {"title", p.title}, {"settings", p.settings}});
-    Json looks = Json::array();
-    for (const Look& l : op.looks)
-        looks.push_back({{"id", l.id}, {"title", l.title}, {"help", l.help}});
-    return {{"id", op.id},
-            {"title", op.title},
-            {"view", op.view},
-            {"character", op.character},
-            {"source", op.source},
-            {"license", op.license},
-            {"working_primaries", op.working.name},
-            {"negatives", op.negatives},
-            {"output", output_of(op)},
-            {"parameters", parameters},
-            {"presets", presets},
-            {"looks", looks},
-            {"warnings", all_warnings(op)},
-            {"deviations", deviations},
-            {"dialects", op.dialects},
-            {"is_diagnostic", op.is_diagnostic},
-            {"is_local", op.is_local()}};
-}
-
-namespace {
-
-Json to_json(const std::vector<Operator>& operators) {
-    Json all = Json::array();
-    for (const Operator& op : operators)
-        all.push_back(to_json(op));
-    return all;
-}
 
 using InputKind = SourceColorName::Kind;
 
@@ -156,17 +58,12 @@ Json inputs_to_json() {
 }
 
 Json spaces_to_json() {
-    Json displays = Json::array();
-    for (const Display& d : all_displays()) {
-        displays.push_back(
-            {{"id", d.id}, {"title", d.title}, {"aliases", d.aliases}, {"source", d.source}});
-    }
     Json spaces = Json::array();
     for (const InputSpace& s : all_input_spaces())
         spaces.push_back({{"id", s.id}, {"title", s.title}, {"aliases", s.aliases}});
-    return {{"operators", to_json(all_operators())},
-            {"local_operators", to_json(local_operators())},
-            {"displays", displays},
+    return {{"operators", all_to_json(all_operators())},
+            {"local_operators", all_to_json(local_operators())},
+            {"displays", all_to_json(all_displays())},
             {"spaces", spaces},
             {"inputs", inputs_to_json()}};
 }
@@ -374,27 +271,6 @@ void print_hosts() {
     }
 }
 
-Json hosts_to_json() {
-    Json all = Json::array();
-    for (const LutApplication& host : all_lut_applications()) {
-        all.push_back(
-            {{"id", host.id},
-             {"title", host.title},
-             {"format", name_of(host.format)},
-             {"size", host.size},
-             {"bits", host.bits},
-             {"input_encoding", lut_encoding_of(host, host.format)},
-             {"input", parse_input_encoding(lut_encoding_of(host, host.format)).default_input},
-             {"takes_any_primaries", host.takes_any_primaries},
-             {"display", host.display},
-             {"interpolation", host.interpolation},
-             {"steps", render(lut_steps_of(host, host.format), command_style())},
-             {"chain_steps", host.chain_steps},
-             {"tested", host.tested}});
-    }
-    return all;
-}
-
 struct Options {
     std::string op;
     bool json = false;
@@ -418,7 +294,7 @@ int run_list(const Options& options) {
         if (!options.op.empty())
             throw Error("list: operator is " + options.op + "; expected none with --hosts");
         if (options.json) {
-            fmt::print("{}\n", hosts_to_json().dump(2));
+            fmt::print("{}\n", all_to_json(all_lut_applications(), command_style()).dump(2));
         } else {
             print_hosts();
         }

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tonewright/verify.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "base/strings.h"
 #include "cli/elapsed_line.h"
-#include "cli/json_forms.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/options.h"
@@ -19,29 +16,25 @@
 #include "cli/suggestions.h"
 #include "shader_runs/shader_run.h"
 #include "tasks/json.h"
+#include "tasks/json_forms.h"
+#include "tasks/verify.h"
 #include "tonewright/lint.h"
 #include "tonewright/lut_match.h"
-#include "tonewright/ocio.h"
+#include "tonewright/verify.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Options {
-    VerifyOptions verify;
+    VerifyRequest request;
     std::vector<std::string> operators;
     std::vector<std::string> shaders;
     std::string picture;
     std::string lut;
     bool json = false;
-    bool quick = false;
     bool summary = false;
     bool no_gpu = false;
 };
-
-const char* level_name(LintFinding::Level level) {
-    if (level == LintFinding::Level::error) return "error";
-    return level == LintFinding::Level::warning ? "warning" : "note";
-}
 
 void print_lint(const std::vector<LintFinding>& findings) {
     std::map<LintFinding::Level, std::size_t> count;
@@ -53,41 +46,25 @@ void print_lint(const std::vector<LintFinding>& findings) {
                count[LintFinding::Level::warning], count[LintFinding::Level::note]);
 }
 
-/// Prints the operator of a LUT. If the mean difference is below 0.01, the LUT is that operator;
-/// the rest is the error between its nodes.
+/// Prints the operator of a LUT, and the operators that are near it.
 void print_matches(const std::string& path, const std::vector<LutMatch>& matches, bool as_json) {
     if (as_json) {
-        Json all = Json::array();
-        for (const LutMatch& m : matches) {
-            all.push_back({{"operator", m.op},
-                           {"defect", m.definition->defect},
-                           {"meant", m.definition->meant},
-                           {"input_encoding", m.encoding},
-                           {"input", m.input},
-                           {"display", m.display},
-                           {"max", m.max},
-                           {"p999", m.p999},
-                           {"mean", m.mean}});
-        }
-        fmt::print("{}\n", all.dump(2));
+        fmt::print("{}\n", all_to_json(matches).dump(2));
         return;
     }
-    constexpr double kSame = 1e-2;
-    // A defect needs a closer match: one 8-bit code.
-    constexpr double kSameDefect = 1.0 / 255;
     const LutMatch& best = matches.front();
     const Operator& op = *best.definition;
-    if (op.is_defect() && best.mean <= kSameDefect) {
+    if (!is_same(best)) {
+        fmt::print("{} is none of these; the nearest:\n\n", one_line(path));
+    } else if (op.is_defect()) {
         fmt::print(
             "{} is {} as {} has it, a defect: {}. It has {} input ({}) and {} output, max error "
             "{:.2g}\n\n",
             one_line(path), op.meant, op.source, op.defect, best.encoding, best.input, best.display,
             best.max);
-    } else if (!op.is_defect() && best.mean <= kSame) {
+    } else {
         fmt::print("{} is {} with {} input ({}) and {} output, max error {:.2g}\n\n",
                    one_line(path), best.op, best.encoding, best.input, best.display, best.max);
-    } else {
-        fmt::print("{} is none of these; the nearest:\n\n", one_line(path));
     }
     fmt::print("{:<32} {:<24} {:<16} {:<12} {:>8} {:>8} {:>8}\n", "operator", "input encoding",
                "input", "output", "max", "99.9 %", "mean");
@@ -140,9 +117,19 @@ void print_summary(const std::vector<ParityRow>& rows) {
     fmt::print("{}", notes);
 }
 
+void print_json(const VerifyResult& result, const std::vector<NotExecuted>& not_executed) {
+    Json object;
+    if (result.lint) object.add("lint", all_to_json(*result.lint));
+    object.add("rows", all_to_json(result.rows));
+    Json without_run = Json::array();
+    for (const NotExecuted& n : not_executed)
+        without_run.push_back({{"name", n.name}, {"reason", n.reason}});
+    object.add("not_executed", without_run);
+    fmt::print("{}\n", object.dump(2));
+}
+
 int run_verify(Options& options) {
-    int exit_code = kOk;
-    VerifyOptions& verify_options = options.verify;
+    VerifyOptions& verify_options = options.request.options;
     if (!options.lut.empty()) {
         print_matches(options.lut,
                       match_lut(open_lut(options.lut, "auto", lut_picture_reader()),
@@ -156,86 +143,45 @@ int run_verify(Options& options) {
     }
     verify_options.with_gpu = !options.no_gpu;
     verify_options.cache_folder = user_cache_folder();
-    if (options.quick) {
-        verify_options.gamut_grid_size = 9;
-        verify_options.random_count = 10000;
-    }
-    redirect_opencolorio_messages([](const std::string& text) {
-        if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
-    });
-    Json lint = Json::array();
-    const bool is_of_config = !verify_options.config.empty() && verify_options.operators.empty();
-    if (is_of_config) {
-        const std::filesystem::path given(verify_options.config);
-        const std::vector<LintFinding> findings =
-            lint_config(std::filesystem::is_directory(given) ? given / "config.ocio" : given,
-                        verify_options.with_gpu);
-        if (!options.json) print_lint(findings);
-        for (const LintFinding& f : findings) {
-            if (f.level == LintFinding::Level::error) exit_code = kCheckFailed;
-            lint.push_back({{"level", level_name(f.level)}, {"where", f.where}, {"what", f.what}});
-        }
-    }
+    options.request.has_lint = true;
+    print_opencolorio_messages();
     if (!options.picture.empty())
         verify_options.picture = picture_commands().read_pixels(options.picture);
+    const bool is_table = !options.json && !options.summary;
+    // Rows on the terminal show the progress.
+    const int terminal = is_table && ::isatty(STDOUT_FILENO) != 0 ? -1 : STDERR_FILENO;
+    std::optional<ElapsedLine> line(std::in_place, "verify", terminal);
+    const std::vector<NotExecuted> not_executed = add_shader_runs(verify_options, options.shaders);
     bool has_heading = false;  // only after the names have been checked
-    const auto print = [&](const ParityRow& row) {
-        if (options.json || options.summary) return;
-        if (!has_heading) fmt::print("{}", parity_heading());
-        has_heading = true;
-        fmt::print("{}", format_row(row));
-        std::fflush(stdout);
-    };
-    std::vector<NotExecuted> not_executed;
-    const std::vector<ParityRow> rows = [&] {
-        // Rows on the terminal show the progress.
-        const bool has_rows = !options.json && !options.summary && ::isatty(STDOUT_FILENO) != 0;
-        const ElapsedLine line("verify", has_rows ? -1 : STDERR_FILENO);
-        not_executed = add_shader_runs(verify_options, options.shaders);
-        return verify(verify_options, print);
-    }();
-    std::size_t failed = 0;
-    for (const ParityRow& row : rows)
-        failed += row.is_ok ? 0 : 1;
-    if (options.summary) print_summary(rows);
+    const VerifyResult result =
+        verify(options.request, {.on_lint =
+                                     [&](const std::vector<LintFinding>& findings) {
+                                         if (options.json) return;
+                                         line.reset();
+                                         print_lint(findings);
+                                         line.emplace("verify", terminal);
+                                     },
+                                 .on_row =
+                                     [&](const ParityRow& row) {
+                                         if (!is_table) return;
+                                         if (!has_heading) fmt::print("{}", parity_heading());
+                                         has_heading = true;
+                                         fmt::print("{}", format_row(row));
+                                         std::fflush(stdout);
+                                     }});
+    line.reset();
+    if (options.summary) print_summary(result.rows);
     if (options.json) {
-        Json all = Json::array();
-        for (const ParityRow& row : rows)
-            all.push_back(to_json(row));
-        Json without_run = Json::array();
-        for (const NotExecuted& n : not_executed)
-            without_run.push_back({{"name", n.name}, {"reason", n.reason}});
-        Json object;
-        if (is_of_config) object.add("lint", lint);
-        object.add("rows", all);
-        object.add("not_executed", without_run);
-        fmt::print("{}\n", object.dump(2));
-    } else if (!rows.empty() || !is_of_config) {
-        fmt::print("{} comparisons, {} beyond their bound\n", rows.size(), failed);
+        print_json(result, not_executed);
+    } else if (!result.rows.empty() || !result.lint) {
+        fmt::print("{} comparisons, {} beyond their bound\n", result.rows.size(), result.failed);
         if (!not_executed.empty() && !options.summary)
             fmt::print("{}", format_not_executed(not_executed));
     }
-    if (failed) exit_code = kCheckFailed;
-    return exit_code;
+    return result.is_ok ? kOk : kCheckFailed;
 }
 
 }  // namespace
-
-Json to_json(const ParityRow& row) {
-    return {{"operator", row.op},
-            {"display", row.display},
-            {"backend", row.backend},
-            {"lowering", row.lowering},
-            {"max", row.max},
-            {"p999", row.p999},
-            {"mean", row.mean},
-            {"max_all", row.max_all},
-            {"max_beyond_rounding", row.max_beyond_rounding},
-            {"bound", row.bound},
-            {"mixed_metric", row.is_mixed_metric},
-            {"ok", row.is_ok},
-            {"note", row.note}};
-}
 
 void add_verify(CommandLine& program) {
     auto options = std::make_shared<Options>();
@@ -251,7 +197,7 @@ void add_verify(CommandLine& program) {
              "operators (default: all with their presets and looks, or the views of the config)")
         .suggest(suggest_operators);
     command
-        .add("--config", options->verify.config,
+        .add("--config", options->request.options.config,
              "config file or its folder, also one of other software (default: a new config)")
         .value("CONFIG")
         .group(what);
@@ -261,13 +207,14 @@ void add_verify(CommandLine& program) {
         .value("FILE")
         .group(what);
     command
-        .add("--display", options->verify.displays,
+        .add("--display", options->request.options.displays,
              "display; repeat for more (default: srgb, or all displays of the config)")
         .value("NAME")
         .suggest(suggest_config_displays)
         .one_value_each()
         .group(what);
-    command.add("--input", options->verify.input, "scene-linear color space of the samples")
+    command
+        .add("--input", options->request.options.input, "scene-linear color space of the samples")
         .value("SPACE")
         .suggest(suggest_spaces)
         .show_default()
@@ -276,11 +223,11 @@ void add_verify(CommandLine& program) {
         .value("FILE")
         .group(how);
     command
-        .add_flag("--quick", options->quick,
+        .add_flag("--quick", options->request.is_quick,
                   "use smaller sample sets: 9 grid points a side, 10,000 random colors")
         .group(how);
     command
-        .add_flag("--best-target", options->verify.only_best_target,
+        .add_flag("--best-target", options->request.options.only_best_target,
                   "measure only the fastest instruction set of this machine")
         .group(how);
     command.add_flag("--no-gpu", options->no_gpu, "leave out OpenColorIO's GPU path and shaders")

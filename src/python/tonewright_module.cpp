@@ -21,6 +21,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/input_file.h"
@@ -33,10 +34,12 @@
 #include "shader_runs/shader_run.h"
 #include "tasks/bake.h"
 #include "tasks/config.h"
+#include "tasks/json_forms.h"
 #include "tasks/pictures/apply.h"
 #include "tasks/pictures/frames.h"
 #include "tasks/pictures/metering.h"
 #include "tasks/pictures/read_picture.h"
+#include "tasks/verify.h"
 #include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
@@ -46,7 +49,6 @@
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
-#include "tonewright/verify.h"
 #include "tonewright/view.h"
 
 namespace py = pybind11;
@@ -362,11 +364,33 @@ py::array evaluate_colors(const std::string& op, const py::object& colors,
     return to;
 }
 
+/// A JSON value as one of Python.
+struct ToPython {
+    py::object operator()(const Json& json) const { return std::visit(*this, json.value()); }
+    py::object operator()(std::nullptr_t) const { return py::none(); }
+    py::object operator()(const Json::Array& elements) const {
+        py::list all;
+        for (const Json& element : elements)
+            all.append((*this)(element));
+        return all;
+    }
+    py::object operator()(const Json::Object& members) const {
+        py::dict all;
+        for (const auto& [name, value] : members)
+            all[py::str(name)] = (*this)(value);
+        return all;
+    }
+    template <class Plain>
+    py::object operator()(const Plain& value) const {
+        return py::cast(value);
+    }
+};
+
 py::dict describe(const ParameterSpec& p);
 py::dict describe(const Operator& op);
 py::dict describe(const Display& display);
-py::dict describe(const LutApplication& application);
-py::dict describe(const ParityRow& row);
+py::object describe(const LutApplication& application);
+py::object describe(const ParityRow& row);
 py::dict describe(const ExtendedView& view);
 
 /// A dict for each value.
@@ -415,41 +439,17 @@ py::dict describe(const Operator& op) {
 }
 
 py::dict describe(const Display& display) {
-    py::dict d;
-    d["id"] = display.id;
-    d["title"] = display.title;
-    d["aliases"] = display.aliases;
-    d["source"] = display.source;
+    py::dict d = ToPython{}(to_json(display));
     d["hdr"] = display.is_hdr;
     d["peak"] = display.peak;
     return d;
 }
 
-py::dict describe(const LutApplication& application) {
-    py::dict d;
-    d["id"] = application.id;
-    d["title"] = application.title;
-    d["format"] = name_of(application.format);
-    d["size"] = application.size;
-    d["input_encoding"] = lut_encoding_of(application, application.format);
-    d["display"] = application.display;
-    d["steps"] = render(lut_steps_of(application, application.format), kStyle);
-    return d;
+py::object describe(const LutApplication& application) {
+    return ToPython{}(to_json(application, kStyle));
 }
 
-py::dict describe(const ParityRow& row) {
-    py::dict d;
-    d["operator"] = row.op;
-    d["display"] = row.display;
-    d["backend"] = row.backend;
-    d["max"] = row.max;
-    d["p999"] = row.p999;
-    d["mean"] = row.mean;
-    d["bound"] = row.bound;
-    d["ok"] = row.is_ok;
-    d["note"] = row.note;
-    return d;
-}
+py::object describe(const ParityRow& row) { return ToPython{}(to_json(row)); }
 
 py::dict describe(const ExtendedView& view) {
     py::dict d;
@@ -803,27 +803,23 @@ py::list verify_operators(const std::vector<std::string>& operators,
                           const std::vector<std::string>& displays, const std::string& input,
                           const std::string& config, bool is_quick, bool with_gpu,
                           const std::vector<std::string>& shaders, const std::string& cache) {
-    VerifyOptions options;
+    VerifyRequest request = {.is_quick = is_quick};
+    VerifyOptions& options = request.options;
     options.cache_folder = cache;
     options.operators = resolve_operators(operators, operator_files());
     options.displays = displays;
     options.input = input;
     options.config = config;
     options.with_gpu = with_gpu;
-    if (is_quick) {
-        options.gamut_grid_size = 9;
-        options.random_count = 10000;
-        options.only_best_target = true;
-    }
-    std::vector<ParityRow> rows;
-    {
+    options.only_best_target = is_quick;
+    const VerifyResult result = [&] {
         const py::gil_scoped_release release;
-        rows = with_memory_for(config.empty() ? "verify" : config, [&] {
+        return with_memory_for(config.empty() ? "verify" : config, [&] {
             add_shader_runs(options, shaders);
-            return verify(options);
+            return verify(request);
         });
-    }
-    return describe_all(rows);
+    }();
+    return describe_all(result.rows);
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tasks/report_picture.h"
+#include "tonewright/verify.h"
+#include "tonewright/view.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// A page that shows operators on pictures, on an sRGB screen.
+struct ReportRequest {
+    /// The page has each once, and also `false_color`.
+    std::vector<ResolvedOperator> operators = {};
+    /// Empty: the chart.
+    std::vector<std::string> pictures = {};
+    /// Reads a picture. The path is empty for the chart. The page cannot run local operators.
+    std::function<ReportPicture(const std::string& path,
+                                const std::vector<ResolvedOperator>& local_operators)>
+        read_picture = {};
+    /// Includes the rows of verify().
+    bool has_parity = true;
+    /// Runs for these rows, @see VerifyOptions::shaders. Called after the pictures were read.
+    std::function<std::vector<LanguageRun>()> shader_runs = {};
+    /// @see LowerOptions; empty: nothing is stored.
+    std::string cache_folder = {};
+};
+
+/// All operators, also local ones.
+/// @param has_variants  also their presets and looks
+[[nodiscard]] std::vector<ResolvedOperator> report_operators(bool has_variants);
+
+/// The page as one HTML file.
+/// @throws Error  @see verify, write_shader; and what read_picture throws
+[[nodiscard]] std::string make_report(const ReportRequest& request);
+
+TONEWRIGHT_NAMESPACE_END

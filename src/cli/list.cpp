@@ -282,22 +282,15 @@ struct Options {
 };
 
 int run_list(const Options& options) {
+    if (!options.op.empty() && (options.inputs || options.hosts)) {
+        throw Error("list: operator is " + options.op + "; expected none with " +
+                    (options.inputs ? "--inputs" : "--hosts"));
+    }
+    const auto print = [](const Json& json) { fmt::print("{}\n", json.dump(2)); };
     if (options.inputs) {
-        if (!options.op.empty())
-            throw Error("list: operator is " + options.op + "; expected none with --inputs");
-        if (options.json) {
-            fmt::print("{}\n", inputs_to_json().dump(2));
-        } else {
-            print_inputs();
-        }
+        options.json ? print(inputs_to_json()) : print_inputs();
     } else if (options.hosts) {
-        if (!options.op.empty())
-            throw Error("list: operator is " + options.op + "; expected none with --hosts");
-        if (options.json) {
-            fmt::print("{}\n", all_to_json(all_lut_applications(), command_style()).dump(2));
-        } else {
-            print_hosts();
-        }
+        options.json ? print(all_to_json(all_lut_applications(), command_style())) : print_hosts();
     } else if (options.definition) {
         if (options.op.empty())
             throw Error("list: operator is missing; expected one before --definition");
@@ -306,7 +299,7 @@ int run_list(const Options& options) {
         const ResolvedOperator resolved = resolve_for_command(options.op);
         const Operator& op = *resolved.op;
         if (options.json) {
-            fmt::print("{}\n", to_json(op).dump(2));
+            print(to_json(op));
         } else if (options.markdown) {
             fmt::print("{}", operator_section(op));
         } else {
@@ -316,7 +309,7 @@ int run_list(const Options& options) {
         for (const Operator& op : all_operators())
             fmt::print("{}\t{}\n", op.id, op.view);
     } else if (options.json) {
-        fmt::print("{}\n", spaces_to_json().dump(2));
+        print(spaces_to_json());
     } else if (options.markdown) {
         for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
             for (const Operator& op : *operators)

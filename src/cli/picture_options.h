@@ -10,7 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/lut_input.h"
-#include "tasks/report_picture.h"
+#include "tasks/report.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 

@@ -153,22 +153,21 @@ int run_verify(Options& options) {
     std::optional<ElapsedLine> line(std::in_place, "verify", terminal);
     const std::vector<NotExecuted> not_executed = add_shader_runs(verify_options, options.shaders);
     bool has_heading = false;  // only after the names have been checked
-    const VerifyResult result =
-        verify(options.request, {.on_lint =
-                                     [&](const std::vector<LintFinding>& findings) {
-                                         if (options.json) return;
-                                         line.reset();
-                                         print_lint(findings);
-                                         line.emplace("verify", terminal);
-                                     },
-                                 .on_row =
-                                     [&](const ParityRow& row) {
-                                         if (!is_table) return;
-                                         if (!has_heading) fmt::print("{}", parity_heading());
-                                         has_heading = true;
-                                         fmt::print("{}", format_row(row));
-                                         std::fflush(stdout);
-                                     }});
+    VerifyListener listener;
+    listener.on_lint = [&](const std::vector<LintFinding>& findings) {
+        if (options.json) return;
+        line.reset();
+        print_lint(findings);
+        line.emplace("verify", terminal);
+    };
+    listener.on_row = [&](const ParityRow& row) {
+        if (!is_table) return;
+        if (!has_heading) fmt::print("{}", parity_heading());
+        has_heading = true;
+        fmt::print("{}", format_row(row));
+        std::fflush(stdout);
+    };
+    const VerifyResult result = verify(options.request, listener);
     line.reset();
     if (options.summary) print_summary(result.rows);
     if (options.json) {

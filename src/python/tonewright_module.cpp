@@ -386,11 +386,8 @@ struct ToPython {
     }
 };
 
-py::dict describe(const ParameterSpec& p);
 py::dict describe(const Operator& op);
 py::dict describe(const Display& display);
-py::object describe(const LutApplication& application);
-py::object describe(const ParityRow& row);
 py::dict describe(const ExtendedView& view);
 
 /// A dict for each value.
@@ -402,23 +399,6 @@ py::list describe_all(const Values& values) {
     return all;
 }
 
-py::dict describe(const ParameterSpec& p) {
-    py::dict d;
-    d["name"] = p.name;
-    d["unit"] = p.unit;
-    d["help"] = p.help;
-    if (p.kind == ParameterSpec::Kind::number) {
-        d["default"] = p.default_value;
-        d["min"] = p.min;
-        d["max"] = p.max;
-    } else {
-        d["default"] = p.default_choice;
-        if (p.kind == ParameterSpec::Kind::choice) d["choices"] = p.choices;
-    }
-    if (p.from_picture) d["statistic"] = p.statistic;
-    return d;
-}
-
 py::dict describe(const Operator& op) {
     py::dict presets;
     for (const Preset& preset : op.presets)
@@ -426,13 +406,7 @@ py::dict describe(const Operator& op) {
     py::dict looks;
     for (const Look& look : op.looks)
         looks[py::str(look.id)] = look.help;
-    py::dict d;
-    d["id"] = op.id;
-    d["title"] = op.title;
-    d["view"] = op.view;
-    d["character"] = op.character;
-    d["source"] = op.source;
-    d["parameters"] = describe_all(op.parameters);
+    py::dict d = ToPython{}(to_json(op));
     d["presets"] = presets;
     d["looks"] = looks;
     return d;
@@ -444,12 +418,6 @@ py::dict describe(const Display& display) {
     d["peak"] = display.peak;
     return d;
 }
-
-py::object describe(const LutApplication& application) {
-    return ToPython{}(to_json(application, kStyle));
-}
-
-py::object describe(const ParityRow& row) { return ToPython{}(to_json(row)); }
 
 py::dict describe(const ExtendedView& view) {
     py::dict d;
@@ -799,10 +767,10 @@ py::dict change_config_file(const std::string& path, const std::string& kind, bo
     return d;
 }
 
-py::list verify_operators(const std::vector<std::string>& operators,
-                          const std::vector<std::string>& displays, const std::string& input,
-                          const std::string& config, bool is_quick, bool with_gpu,
-                          const std::vector<std::string>& shaders, const std::string& cache) {
+py::object verify_operators(const std::vector<std::string>& operators,
+                            const std::vector<std::string>& displays, const std::string& input,
+                            const std::string& config, bool is_quick, bool with_gpu,
+                            const std::vector<std::string>& shaders, const std::string& cache) {
     VerifyRequest request = {.is_quick = is_quick};
     VerifyOptions& options = request.options;
     options.cache_folder = cache;
@@ -819,7 +787,7 @@ py::list verify_operators(const std::vector<std::string>& operators,
             return verify(request);
         });
     }();
-    return describe_all(result.rows);
+    return ToPython{}(all_to_json(result.rows));
 }
 
 }  // namespace
@@ -850,7 +818,8 @@ PYBIND11_MODULE(_tonewright, m) {
           py::arg("layer"));
     m.def("operators", [] { return tw::describe_all(tw::all_operators()); });
     m.def("displays", [] { return tw::describe_all(tw::all_displays()); });
-    m.def("applications", [] { return tw::describe_all(tw::all_lut_applications()); });
+    m.def("applications",
+          [] { return tw::ToPython{}(tw::all_to_json(tw::all_lut_applications(), tw::kStyle)); });
     m.def("bake", &tw::bake_file, py::arg("op"), py::arg("file"), py::kw_only(), py::arg("host"),
           py::arg("format"), py::arg("input_encoding"), py::arg("dimension"), py::arg("size"),
           py::arg("max_error"), py::arg("nodes"), py::arg("decimals"), py::arg("depth"),

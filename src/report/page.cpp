@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "report/sha256.h"
-#include "report/viewer.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

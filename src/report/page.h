@@ -8,6 +8,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// viewer.html, with the places for the data.
+extern const char* const kReportViewer;
+
 /// The page as one HTML file: the viewer, and what it shows.
 /// @param archive     a ZIP archive: page.json, the files that it names, references.js
 /// @param references  the text of references.js. The page's policy lets the viewer and this script

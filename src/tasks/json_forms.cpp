@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <string_view>
 
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
@@ -16,27 +14,17 @@ namespace {
 
 using Kind = ParameterSpec::Kind;
 
-std::string_view kind_name(Kind kind) {
-    switch (kind) {
-        case Kind::number:
-            return "number";
-        case Kind::choice:
-            return "choice";
-        case Kind::text:
-            break;
-    }
-    return "text";
+const char* kind_name(Kind kind) {
+    if (kind == Kind::number) return "number";
+    return kind == Kind::choice ? "choice" : "text";
 }
-
-/// JSON has no infinity.
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json to_json(const ParameterSpec& p, bool is_live) {
     Json j = {{"name", p.name}, {"kind", kind_name(p.kind)}, {"unit", p.unit}};
     if (p.kind == Kind::number) {
         j.add("default", p.default_value);
-        j.add("min", number_or_null(p.min));
-        j.add("max", number_or_null(p.max));
+        j.add("min", p.min);
+        j.add("max", p.max);
         j.add("live", is_live);
     } else {
         j.add("default", p.default_choice);
@@ -79,7 +67,7 @@ Json to_json(const Operator& op) {
     Json deviations = Json::array();
     for (const DocumentedDifference& d : op.differences) {
         deviations.push_back({{"kind", difference_names().at(static_cast<std::size_t>(d.kind))},
-                              {"value", number_or_null(d.value)},
+                              {"value", d.value},
                               {"when", d.when},
                               {"text", to_string(d)}});
     }

@@ -5,11 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "tasks/report_picture.h"
 #include "tonewright/verify.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+struct ReportPicture {
+    std::string name;
+    int width = 0;
+    int height = 0;
+    std::string exr;         // scene-linear Rec.709 in half floats
+    std::vector<float> rgb;  // the same
+    /// Output of local operators on sRGB, as PNG, in the order of the request.
+    std::vector<std::string> shown;
+};
 
 /// A page that shows operators on pictures, on an sRGB screen.
 struct ReportRequest {

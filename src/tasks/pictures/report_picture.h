@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tasks/report_picture.h"
+#include "tasks/report.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

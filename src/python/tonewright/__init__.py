@@ -273,7 +273,7 @@ def info(image: Path, *, input: str = "auto", subimage: int | str = "", layer: s
 
 
 def operators() -> list[dict[str, Any]]:
-    """Return all operators: dicts with id, title, view, character, source, parameters, presets and looks."""
+    """Return all operators: dicts with the facts of `tonewright list --json`. presets: settings by id. looks: help by id."""
     return _tonewright.operators()
 
 
@@ -283,7 +283,7 @@ def displays() -> list[dict[str, Any]]:
 
 
 def applications() -> list[dict[str, Any]]:
-    """Return the applications of bake(host=...): dicts with id, title, format, size, input_encoding, display and steps."""
+    """Return the applications of bake(host=...): dicts with the facts of `tonewright list --hosts --json`."""
     return _tonewright.applications()
 
 
@@ -387,7 +387,8 @@ def change_config(config: Path, change: str = "add", *, views: Iterable[str] = (
 def verify(operators: Iterable[str] = (), *, displays: Iterable[str] = (), input: str = "lin_rec709",
            config: Path | None = None, quick: bool = False, gpu: bool = True,
            shaders: Iterable[str] = (), cache: Path | None = None) -> list[dict[str, Any]]:
-    """Compare every backend with the double-precision reference and return the errors, one dict for each comparison.
+    """Compare every backend with the double-precision reference and return the errors, one dict for each comparison, with
+    the numbers of `tonewright verify --json`.
 
     operators: empty: all, or those of the config.
     displays: empty: sRGB, or those of the config.

@@ -27,7 +27,7 @@ struct VerifyListener {
 };
 
 struct VerifyResult {
-    /// Of a config. Unset: not asked for.
+    /// Findings about the config. Unset: not asked for.
     std::optional<std::vector<LintFinding>> lint = {};
     std::vector<ParityRow> rows = {};
     /// Rows beyond their bound.

@@ -28,7 +28,8 @@ void tonemap_pictures(const Tonemapper& tonemapper, std::vector<FrameFiles>& fil
                       const SequenceOptions& options, double timeout);
 
 /// Writes a picture in false color with its legend below it, in sRGB.
-/// @param picture  with associated alpha, upright
+/// @param picture  in the size of the file, with associated alpha, upright
+/// @param read     its `resize` is the size of the result
 /// @throws Error  wider than 16384 pixels, or narrower than 16
 void write_with_legend(const Tonemapper& tonemapper, OIIO::ImageBuf picture, const FrameFiles& file,
                        const WriteOptions& write, const ReadOptions& read, int nthreads);

@@ -691,7 +691,7 @@ def test_exact_forms(report, command, scratch):
                             (["gt7", "--format", "clf", "--size", "9", "-o", f"{path}.clf"], "[17, 129]"),
                             (["gt7", "--format", "clf", "--depth", "16", "-o", f"{path}.clf"], "depth"),
                             (["gt7", "--format", "clf", "--nodes", "smooth", "-o", f"{path}.clf"], "smooth"),
-                            (["gt7", "--format", "clf", "--max-error", "1e-9", "-o", f"{path}.clf"], "max error")):
+                            (["gt7", "--format", "clf", "--max-error", "1e-9", "-o", f"{path}.clf"], "--max-error is 1e-09; expected at least")):
         code, _, err = call(command, ["bake", *arguments, "--input-encoding", "linear"])
         report.check(f"bake {' '.join(arguments[:-2])} of scene-linear input is refused",
                      code == USAGE and word in err and len(err.splitlines()) == 1 and not list(scratch.glob("x.*")), err)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <system_error>
 
@@ -11,10 +12,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-ElapsedLine::ElapsedLine(const std::string& what, int terminal) {
+ElapsedLine::ElapsedLine(const std::string& what, int terminal,
+                         std::chrono::steady_clock::time_point start) {
     if (message_options().is_quiet || terminal < 0 || ::isatty(terminal) == 0) return;
     try {
-        thread_ = std::thread([this, what, terminal] { run(what, terminal); });
+        thread_ = std::thread([this, what, terminal, start] { run(what, terminal, start); });
     } catch (const std::system_error&) {
         // If there are no more threads, the work continues without the line.
     }
@@ -30,12 +32,15 @@ ElapsedLine::~ElapsedLine() {
     thread_.join();
 }
 
-void ElapsedLine::run(const std::string& what, int terminal) {
+void ElapsedLine::run(const std::string& what, int terminal,
+                      std::chrono::steady_clock::time_point start) {
+    using std::chrono::duration_cast, std::chrono::seconds, std::chrono::steady_clock;
     constexpr int kFirst = 2;
-    const auto start = std::chrono::steady_clock::now();
+    const auto passed =
+        static_cast<int>(duration_cast<seconds>(steady_clock::now() - start).count());
     bool is_shown = false;
     std::unique_lock lock(mutex_);
-    for (int second = kFirst; !is_ended_; ++second) {
+    for (int second = std::max(kFirst, passed + 1); !is_ended_; ++second) {
         if (end_.wait_until(lock, start + std::chrono::seconds(second),
                             [this] { return is_ended_; }))
             break;

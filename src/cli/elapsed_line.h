@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -20,13 +21,16 @@ class ElapsedLine {
   public:
     /// @param what      the work in progress
     /// @param terminal  a file descriptor, or -1
-    explicit ElapsedLine(const std::string& what, int terminal = 2);
+    /// @param start     of the work
+    explicit ElapsedLine(
+        const std::string& what, int terminal = 2,
+        std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now());
     ~ElapsedLine();
     ElapsedLine(const ElapsedLine&) = delete;
     ElapsedLine& operator=(const ElapsedLine&) = delete;
 
   private:
-    void run(const std::string& what, int terminal);
+    void run(const std::string& what, int terminal, std::chrono::steady_clock::time_point start);
 
     std::mutex mutex_;
     std::condition_variable end_;
@@ -37,11 +41,12 @@ class ElapsedLine {
 /// Runs a task that takes a Listener, with such a line. Its warnings are printed.
 template <class Task>
 auto with_elapsed_line(const std::string& what, const Task& task) {
+    const auto start = std::chrono::steady_clock::now();
     std::optional<ElapsedLine> line(std::in_place, what);
     return task(Listener{.warn = [&](const std::string& text) {
         line.reset();
         warn(text);
-        line.emplace(what);
+        line.emplace(what, 2, start);
     }});
 }
 

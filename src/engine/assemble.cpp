@@ -248,8 +248,8 @@ class Assembler {
         if (length > 1e-30)
             result.parts_per_unit =
                 static_cast<double>(2 * std::bit_ceil(positions.size())) / length;
-        std::vector<std::size_t>
-            part;  // the part in which each cell starts, computed as in the kernel
+        // The part in which each cell starts, computed as in the kernel.
+        std::vector<std::size_t> part;
         const auto part_of = [&](auto begin, auto first) {
             using T = decltype(begin);
             return static_cast<std::size_t>((begin - first) *

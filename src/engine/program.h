@@ -149,8 +149,8 @@ struct NonuniformTables {
     /// all half floats, one part has 15,360 cells.
     double parts_per_unit = 0;
     Samples first_cell;
-    std::int32_t half_of_most =
-        0;  // first step of the bisection, a power of two; 0: one cell a part
+    /// First step of the bisection, a power of two; 0: one cell a part.
+    std::int32_t half_of_most = 0;
     /// Start of each cell, then infinities, because bisection reads past the last cell. Starts in
     /// float are rounded up, so that every float x keeps its cell.
     Samples begin;

@@ -141,6 +141,13 @@ ChangedConfig replace_config(const ExtendedConfig& changed, const ConfigChange& 
 
 ChangedConfig change_config(const std::string& path, const ConfigChange& change) {
     using Kind = ConfigChange::Kind;
+    const ConfigOptions& options = change.options;
+    if (change.kind == Kind::remove &&
+        !(options.views.empty() && options.custom.empty() && options.displays.empty() &&
+          options.looks.empty() && options.exposure_stops.empty())) {
+        throw Error(Problem{.value = "views, displays, looks or exposures are given to be removed",
+                            .expected = "none, because everything that was added is removed"});
+    }
     const ExtendedConfig changed =
         change.kind == Kind::remove
             ? reduce_config(path)

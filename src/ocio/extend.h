@@ -43,9 +43,7 @@ struct ExtendedConfig {
 
 /// Adds views, looks and output spaces to a user's config, on its displays whose numbers match one
 /// of Tonewright's. The rest of the file stays as it is, with comments and order.
-/// @param options     views (empty, if there are custom ones: none), displays (of the config),
-/// looks,
-///                    custom, exposure_stops
+/// @param options     @see ConfigChange::options
 /// @param is_updated  removes the earlier additions first; if all options are empty, repeats the
 ///                    earlier ones
 /// @throws FileError  the config cannot be read, OpenColorIO refuses it, or it lacks an interchange

@@ -78,7 +78,9 @@ bool is_number(std::string_view text) {
 std::string argument_of(std::string_view parameter) {
     for (const auto& [field, argument] :
          {std::pair("application", "host"), std::pair("low_percentile", "low"),
-          std::pair("high_percentile", "high"), std::pair("pixel_type", "type")}) {
+          std::pair("high_percentile", "high"), std::pair("pixel_type", "dtype"),
+          std::pair("type", "dtype"), std::pair("in", "source"), std::pair("out", "target"),
+          std::pair("frames_per_second", "fps")}) {
         if (parameter == field) return argument;
     }
     return std::string(parameter);
@@ -100,13 +102,25 @@ constexpr MessageStyle kStyle = {
         return fmt::format("{}=\"{}\"", argument, value);
     }};
 
+/// A message, which may name a file whose name is no UTF-8.
+py::str text_from(const std::string& message) {
+    return py::reinterpret_steal<py::str>(PyUnicode_DecodeUTF8(
+        message.data(), static_cast<py::ssize_t>(message.size()), "backslashreplace"));
+}
+
+/// The name of a file, as os.fsdecode() has it.
+py::str path_text(const std::string& path) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeFSDefaultAndSize(path.data(), static_cast<py::ssize_t>(path.size())));
+}
+
 /// A UserWarning at the line that called the package's function.
 /// @throws py::error_already_set  Python's filters make it an error.
 void warn(const std::string& text) {
     constexpr Py_ssize_t kCallerOfPackage = 2;
     const py::gil_scoped_acquire acquire;
-    const std::string message = one_line(render(text, kStyle));
-    if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), kCallerOfPackage) != 0)
+    const py::str message = text_from(one_line(render(text, kStyle)));
+    if (PyErr_WarnEx(PyExc_UserWarning, PyUnicode_AsUTF8(message.ptr()), kCallerOfPackage) != 0)
         throw py::error_already_set();
 }
 
@@ -134,7 +148,7 @@ PyObject* exception_of(const Problem& problem) {
 }
 
 void set_error(const Problem& problem) {
-    PyErr_SetString(exception_of(problem), one_line(render(problem, kStyle)).c_str());
+    PyErr_SetObject(exception_of(problem), text_from(one_line(render(problem, kStyle))).ptr());
 }
 
 /// The reader of .tone files and LUTs.
@@ -509,9 +523,10 @@ FileOptions parse_file_options(const std::string& op, const py::dict& file,
     if (!options.read.resize.empty()) (void)parse_resize(options.read.resize);
     options.read.subimage = text("subimage");
     options.read.layer = text("layer");
-    options.read.max_pixels = file["max_pixels"].cast<double>();
     options.tonemap = parse_options(op, arguments);
     WriteOptions& write = options.write;
+    if (const auto most = file["max_pixels"].cast<std::optional<double>>())
+        options.read.max_pixels = write.max_pixels = *most;
     set_alpha(write, text("alpha"));
     take_alpha(options.tonemap, write);
     if (const std::string type = text("type"); !type.empty()) set_pixel_type(write, type);
@@ -537,8 +552,8 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
 }
 
 /// @param frames  text of parse_frames(), or numbers
-std::vector<int> frames_of(const py::handle& frames) {
-    return py::isinstance<py::str>(frames) ? parse_frames(frames.cast<std::string>())
+std::vector<int> frames_of(const py::handle& frames, const char* parameter) {
+    return py::isinstance<py::str>(frames) ? parse_frames(frames.cast<std::string>(), parameter)
                                            : frames.cast<std::vector<int>>();
 }
 
@@ -546,12 +561,23 @@ std::vector<int> frames_of(const py::handle& frames) {
 py::list tonemap_shot(const std::string& in, const std::string& out, const std::string& op,
                       const py::dict& shot, const py::dict& file, const py::kwargs& arguments) {
     const auto text = [&](const char* name) { return shot[name].cast<std::string>(); };
-    const FileOptions options = parse_file_options(op, file, arguments);
+    FileOptions options = parse_file_options(op, file, arguments);
+    // Reports wrong options before the shot is metered.
+    (void)PictureWriter(out, options.write);
     ExposureRequest exposure;
-    exposure.takes_sequence = shot["sequence"].cast<bool>();
+    const std::size_t statistics =
+        find_choice("statistics", text("statistics"), {"picture", "sequence", "defaults"});
+    exposure.takes_sequence = statistics == 1;
+    if (statistics == 2) options.tonemap.statistics = TonemapOptions::Statistics::defaults;
     if (const std::string method = text("auto_exposure"); !method.empty()) {
         exposure.rule = ExposureRule{};
-        exposure.rule->method = parse_meter_method(method);
+        try {
+            exposure.rule->method = parse_meter_method(method);
+        } catch (const Error& e) {
+            Problem problem = e.problem();
+            problem.parameter = "auto_exposure";
+            throw Error(problem);
+        }
         exposure.rule->key = shot["key"].cast<std::optional<double>>();
         exposure.rule->compensation = shot["compensation"].cast<double>();
         check_exposure_rule(*exposure.rule);
@@ -566,14 +592,14 @@ py::list tonemap_shot(const std::string& in, const std::string& out, const std::
     exposure.meter.options.read = options.read;
     exposure.meter.cache = text("meter_cache");
     exposure.meter.work.threads = options.nthreads;
-    if (!shot["meter_frames"].is_none()) exposure.frames = frames_of(shot["meter_frames"]);
+    if (!shot["meter_frames"].is_none())
+        exposure.frames = frames_of(shot["meter_frames"], "meter_frames");
     ShotRequest request = {.in = in,
                            .out = out,
-                           .numbers = frames_of(shot["frames"]),
+                           .numbers = frames_of(shot["frames"], "frames"),
                            .skips_existing = shot["skip_existing"].cast<bool>(),
                            .is_in_place = options.is_in_place};
-    request.missing = static_cast<ShotRequest::Missing>(
-        find_choice("missing", text("missing"), {"error", "skip", "hold"}));
+    request.missing = parse_missing(text("missing"));
     exposure.leaves_out_missing = request.missing != ShotRequest::Missing::error;
     SequenceOptions sequence = {.write = options.write,
                                 .skip_existing = request.skips_existing,
@@ -595,12 +621,12 @@ py::list tonemap_shot(const std::string& in, const std::string& out, const std::
         const FrameFiles& frame = planned.frames[i];
         py::dict d;
         d["frame"] = planned.numbers[i];
-        d["source"] = frame.in;
-        d["target"] = frame.out;
+        d["source"] = path_text(frame.in);
+        d["target"] = path_text(frame.out);
         d["exposure"] = frame.exposure_stops.value_or(options.tonemap.exposure_stops);
         d["skipped"] = frame.is_skipped;
         d["error"] = py::none();
-        if (frame.problem) d["error"] = one_line(render(*frame.problem, kStyle));
+        if (frame.problem) d["error"] = text_from(one_line(render(*frame.problem, kStyle)));
         results.append(d);
     }
     return results;
@@ -694,7 +720,7 @@ py::dict meter_any(const py::object& image, const std::string& method, std::opti
         const py::gil_scoped_release release;
         metering =
             with_memory_for("meter", [&] { return meter(pixels.picture, options, nthreads); });
-    } else if (!py::isinstance<py::str>(image)) {
+    } else if (!py::isinstance<py::bytes>(image)) {
         throw py::type_error("meter: image is a " +
                              std::string(py::str(py::type::of(image).attr("__name__"))) +
                              "; expected a path, a numpy array or an OpenImageIO.ImageBuf");
@@ -756,8 +782,8 @@ py::dict change_config_file(const std::string& path, const std::string& kind, bo
         return with_memory_for(path, [&] { return change_config(path, change); });
     }();
     py::dict d;
-    d["path"] = changed.path;
-    d["backup"] = changed.backup;
+    d["path"] = path_text(changed.path);
+    d["backup"] = path_text(changed.backup);
     py::dict added;
     for (const auto& [name, items] : changed.added)
         added[py::str(name)] = items;

@@ -164,8 +164,7 @@ LutRequest lut_request_of(const BakeRequest& given, LutFormat format) {
 
 BakeResult bake(const BakeRequest& request, const Listener& listener) {
     // Reports the error before minutes of work, and before the check of the name.
-    if (const std::string why = why_no_file(request.file); !why.empty())
-        throw FileError(fmt::format("write: {}: {}", request.file, why));
+    require_writable_file(request.file);
     BakeResult result;
     const LutApplication* const host = request.application;
     LutRequest& lut = result.request;

@@ -23,6 +23,9 @@ WrittenConfig describe(const std::string& path, const std::vector<GeneratedFile>
 std::vector<WrittenConfig> write_config(const ConfigRequest& request, const Listener& listener) {
     const std::string& folder = request.folder;
     const std::filesystem::path archive(request.archive);
+    if (folder.empty() && archive.empty())
+        throw Error(
+            Problem{.value = "there is no folder and no archive", .expected = "one of them"});
     const ConfigPlan plan(request.options);
     for (const std::string& text : plan.warnings())
         listener.warn_of(text);

@@ -21,6 +21,7 @@ ExactFiles::ExactFiles(const BakeRequest& request, Settings settings)
     request_.exposure_stops = request.exposure_stops;
     request_.display = request.display;
     request_.reference_white = request.reference_white;
+    request_.cache_folder = request.cache_folder;
 }
 
 std::vector<ExactFile> ExactFiles::of(const LutApplication& host) {

@@ -26,7 +26,9 @@ struct ExactFile {
 /// The files of one operator for applications. Applications share what was measured.
 class ExactFiles {
   public:
-    /// @param request   the operator, its input and its display; the rest does not count
+    /// @param request   the operator, its input, its display, and the cache folder; the rest does
+    /// not
+    ///                  count
     /// @param settings  of the operator, also for its formula
     ExactFiles(const BakeRequest& request, Settings settings);
 

@@ -32,10 +32,7 @@ std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string
 
 ShaderResult write_shader_files(const ShaderRequest& request, const std::string& file,
                                 const Listener& listener) {
-    if (!file.empty()) {
-        if (const std::string why = why_no_file(file); !why.empty())
-            throw FileError(fmt::format("write: {}: {}", file, why));
-    }
+    if (!file.empty()) require_writable_file(file);
     ShaderResult result{write_shader(request)};
     const Shader& shader = result.shader;
     listener.warn_of(stand_in_warning(request.view.op, "shader", request.uniforms));

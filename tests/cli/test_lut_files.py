@@ -380,7 +380,11 @@ def foreign_corpus():
                        ("nan.look", re.sub('(?<=<data>")........', "0000C07F", LOOK)),
                        ("letters.look", re.sub('(?<=<data>")....', "xyzw", LOOK)),
                        ("twice.look", LOOK.replace("<size>", "<size>3</size><size>")),
-                       ("mask.look", LOOK.replace("<LUT>", "<mask><a/></mask><LUT>")), ("none.look", "<look></look>\n"),
+                       ("mask.look", LOOK.replace("<LUT>", "<mask><a/></mask><LUT>")),
+                       ("comment.look", LOOK.replace("<LUT>", '<mask><!-- c -->"mask"</mask><LUT>')),
+                       ("joined.look", LOOK.replace("<size>", "<size><!-- c -->")),
+                       ("child.look", LOOK.replace("</data>", "<a/>00000000</data>")),
+                       ("none.look", "<look></look>\n"),
                        ("infinite.cc", CORRECTION.replace("0 0 0.1", "0 -1e90 0.1")),
                        ("utf16.cc", CORRECTION.encode("utf-16-le").decode("latin1"))):
         yield name, name, text.encode("latin1")

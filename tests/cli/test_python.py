@@ -271,6 +271,8 @@ def check_change(report, tw, command, scratch):
     report.check("change_config(): the files of --update", same() and changed["removed_tables"] > 0, changed)
     raises(report, "change_config of a name that is taken", ValueError, "already; expected another name (custom=",
            lambda: tw.change_config(config, views=["drago"]))
+    raises(report, "change_config: one view is removed", ValueError, "expected none, because everything",
+           lambda: tw.change_config(config, "remove", views=["drago"]))
     tw.change_config(config, "remove")
     report.check("change_config(): the old text after its removal", config.read_text() == text)
     raises(report, "change_config without views to remove", OSError, "", lambda: tw.change_config(config, "remove"))
@@ -298,7 +300,15 @@ def test_config(report, tw, command, scratch):
                  (scratch / "ours.ocioz").read_bytes() == (scratch / "theirs.ocioz").read_bytes())
     raises(report, "make_config of a ZIP", ValueError, f"archive is {scratch}/x.zip; expected a name that ends in .ocioz",
            lambda: tw.make_config(None, archive=scratch / "x.zip", views=["hable"]))
-    raises(report, "make_config into nothing", ValueError, "expected a folder or an archive", lambda: tw.make_config(None))
+    raises(report, "make_config into nothing", ValueError, "no folder and no archive; expected one of them", lambda: tw.make_config(None))
+    raises(report, "make_config of an empty name", ValueError, "folder is empty; expected a name", lambda: tw.make_config(""))
+    raises(report, "make_config of a list of views", TypeError, "custom must be a mapping",
+           lambda: tw.make_config(scratch / "x", custom=[("A", "hable")]))
+    odd = os.fsencode(scratch) + b"/\xff.ocioz"
+    tw.make_config(None, archive=odd, views=["hable"], displays=["srgb"])
+    report.check("make_config(): a name that is no UTF-8", os.path.getsize(odd) == (scratch / "ours.ocioz").stat().st_size)
+    raises(report, "change_config of a name that is no UTF-8", FileNotFoundError, "none?.ocio",
+           lambda: tw.change_config(os.fsencode(scratch) + b"/none\xff.ocio"))
     check_change(report, tw, command, scratch)
     raises(report, "make_config of no view", ValueError, "hablex", lambda: tw.make_config(scratch / "x", views=["hablex"]))
 
@@ -440,6 +450,31 @@ def test_frames(report, tw, command, scratch):
            lambda: tw.tonemap_frames(pattern, folder / "x.####.png", "hable", "1-x"))
     raises(report, "tonemap_frames: what missing frames do", ValueError, "missing is x; expected error, skip or hold",
            lambda: tw.tonemap_frames(pattern, folder / "x.####.png", "hable", "1-2", missing="x"))
+    def refused(what, error, words, *, frames="1-2", target="x.####.png", **arguments):
+        raises(report, f"tonemap_frames: {what}", error, words,
+               lambda: tw.tonemap_frames(pattern, folder / target, "hable", frames, **arguments))
+
+    for name, value in (("key", 0.3), ("compensation", 1), ("fps", 30)):
+        refused(f"{name} of nothing", ValueError, f"{name} is {value}; expected auto_exposure with it", **{name: value})
+    for name, value in (("meter_frames", "1-5"), ("meter_cache", folder / "c.json")):
+        refused(f"{name} of nothing", ValueError, f'{name} is given; expected auto_exposure or statistics="sequence"', **{name: value})
+    refused("no frames to meter", ValueError, "meter_frames is empty", auto_exposure="mean", meter_frames=[])
+    refused("frames to meter", ValueError, "meter_frames is x; expected frames such as", auto_exposure="mean", meter_frames="x")
+    refused("a method", ValueError, "auto_exposure is bogus; expected log-average", auto_exposure="bogus")
+    refused("statistics", ValueError, "statistics is all; expected picture, sequence or defaults", statistics="all")
+    refused("a pixel type", ValueError, "dtype is bogus", dtype="bogus")
+    refused("a compression", ValueError, "compression", compression="bogus", target="x.####.exr")
+    refused("a target without a number", ValueError, "target is ", target="x.png")
+    refused("bytes as frames", TypeError, "frames must be str or a sequence of int", frames=b"1-2")
+    refused("large frames", ValueError, "frames is 1099511627776; expected a number of 32 bits", frames=[2 ** 40])
+    refused("large jobs", ValueError, "jobs is 1099511627776; expected a number of 32 bits", jobs=2 ** 40)
+    refused("negative jobs", ValueError, "jobs is -1; expected 0 or more", jobs=-1)
+    report.check("tonemap_frames: refused calls write nothing", not list(folder.glob("x.*")), list(folder.glob("x.*")))
+    again = tw.tonemap_frames(pattern, folder / "any.####.png", "drago", [1], statistics="Sequence")
+    report.check("tonemap_frames: statistics in any case", again[0]["error"] is None, again)
+    odd = os.fsencode(folder) + b"/\xff.####.png"
+    again = tw.tonemap_frames(pattern, odd, "hable", [1])
+    report.check("tonemap_frames: a name that is no UTF-8", os.path.exists(again[0]["target"]) and again[0]["error"] is None, again)
     raises(report, "tonemap_frames: an option of nothing", TypeError, "sharpen",
            lambda: tw.tonemap_frames(pattern, folder / "x.####.png", "hable", "1-2", sharpen=1))
 

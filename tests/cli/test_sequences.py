@@ -228,23 +228,32 @@ def test_progress(shots):
     folder = shots.folder / "progress"
     folder.mkdir()
     make_shot(folder, [1])
-    leader, follower = pty.openpty()
+
+    def run_on_terminal(*arguments):
+        leader, follower = pty.openpty()
+        process = subprocess.Popen([shots.command, "apply", "in.#.exr", "out.#.exr", *HABLE, *arguments], cwd=folder,
+                                   stderr=follower)
+        os.close(follower)
+        shown = b""
+        with contextlib.suppress(OSError):  # the other end is closed
+            while part := os.read(leader, 4096):
+                shown += part
+        os.close(leader)
+        text = shown.decode()
+        return process.wait(), text, [part for part in text.split("\r") if part.startswith("[")]
+
     # More frames than half a second takes, after which the bar appears.
-    process = subprocess.Popen([shots.command, "apply", "in.#.exr", "out.#.exr", *HABLE, "--frames", "1-600", "--missing",
-                                "hold"], cwd=folder, stderr=follower)
-    os.close(follower)
-    shown = b""
-    with contextlib.suppress(OSError):  # the other end is closed
-        while part := os.read(leader, 4096):
-            shown += part
-    os.close(leader)
-    text = shown.decode()
-    bars = [part for part in text.split("\r") if part.startswith("[")]
-    shots.report.check("on a terminal: a bar with frames a second and the time left", process.wait() == OK and bars and all(
+    code, text, bars = run_on_terminal("--frames", "1-600", "--missing", "hold")
+    shots.report.check("on a terminal: a bar with frames a second and the time left", code == OK and bars and all(
         "/600 frames, " in bar and " per second, " in bar and " s left" in bar for bar in bars), text[:500])
     shots.report.check("on a terminal: the bar goes away, the summary stays",
                        "\r\033[K" in text and text.rstrip().endswith("600 frames: 600 written, 599 held for missing ones"),
                        text[-300:])
+    for number in range(2, 1501):
+        (folder / f"in.{number:04d}.exr").hardlink_to(folder / "in.0001.exr")
+    code, text, bars = run_on_terminal("--frames", "1-2", "--meter-frames", "1-1500", "--auto-exposure", "mean")
+    shots.report.check("on a terminal: the bar counts all frames that are metered",
+                       code == OK and bars and all("/1500 frames" in bar for bar in bars), text[:500])
 
 
 def wait_for(process, folder, count):

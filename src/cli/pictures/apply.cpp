@@ -173,8 +173,7 @@ TonemapOptions tonemap_options_of(const ApplyOptions& options, const WriteOption
 }
 
 ShotRequest::Missing missing_of(const ApplyOptions& options) {
-    return static_cast<ShotRequest::Missing>(
-        find_choice("missing", options.frames.missing, {"error", "skip", "hold"}));
+    return parse_missing(options.frames.missing);
 }
 
 bool takes_sequence(const ApplyOptions& options) {
@@ -197,7 +196,7 @@ ExposureRequest exposure_request_of(const ApplyOptions& options, const TonemapOp
     request.exposure_stops = options.exposure;
     if (options.shot.adapt) request.adaptation = adaptation_of(options.shot);
     if (!options.shot.meter_frames.empty())
-        request.frames = parse_frames(options.shot.meter_frames);
+        request.frames = parse_frames(options.shot.meter_frames, "meter_frames");
     request.leaves_out_missing = missing_of(options) != ShotRequest::Missing::error;
     return request;
 }
@@ -399,7 +398,12 @@ int apply_to_shot(Tonemapper& tonemapper, const ApplyOptions& options, const Fra
                                            quiet.reset();
                                            warn(text);
                                        },
-                                   .progress = [&](std::size_t, std::size_t) { bar->add(true); }};
+                                   .progress =
+                                       [&](std::size_t, std::size_t count) {
+                                           if (!bar) return;
+                                           bar->expect(count);
+                                           bar->add(true);
+                                       }};
         meter_frames(tonemapper, shot, pattern.in, exposure, listener);
     }
     quiet.reset();

@@ -21,7 +21,7 @@ void ProgressBar::add(bool took_time) {
     constexpr double kInterval = 0.1;
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    if (terminal_ < 0 || seconds < next_) return;
+    if (terminal_ < 0 || seconds < next_ || done_ > count_) return;
     next_ = seconds + kInterval;
     constexpr std::size_t kWidth = 40;
     const std::size_t filled = kWidth * done_ / count_;

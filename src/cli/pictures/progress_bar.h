@@ -20,6 +20,8 @@ class ProgressBar {
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
+    /// The count becomes another one: that of the frames to meter.
+    void expect(std::size_t count) { count_ = count; }
     /// Counts one frame.
     /// @param took_time  false for a skipped frame, which does not count for the remaining time
     void add(bool took_time);

@@ -92,11 +92,11 @@ struct ConfigChange {
     enum class Kind : unsigned char {
         add,
         update,  ///< removes the earlier additions first; without options, repeats them
-        remove,  ///< removes everything that was added
+        remove,  ///< removes everything that was added; takes no views
     };
     Kind kind = Kind::add;
-    /// Views (empty, if there are custom ones: none), displays (of the config), looks, custom views
-    /// and exposures. Others do not count.
+    /// Views (empty, if there are custom ones: none), displays (of the config), looks, custom
+    /// views, exposures, `others` and `cache_folder`. The rest does not count.
     ConfigOptions options = {};
     /// Keeps the old config as PATH.bak, or under the first such name with a number that is free.
     bool has_backup = false;
@@ -128,7 +128,8 @@ struct ChangedConfig {
     /// that are gone.
     std::string folder;
     std::size_t removed_tables = 0;
-    /// Errors of the added views. Empty if the linked OpenColorIO cannot read the config's profile.
+    /// Errors of the added views. Empty after `remove`, and if the linked OpenColorIO cannot read
+    /// the config's profile.
     std::vector<ExtendedView> views = {};
 };
 

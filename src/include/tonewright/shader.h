@@ -83,7 +83,8 @@ struct ShaderRequest {
     /// Not null: writes the whole file for the application, in its language instead of `language`.
     /// Uniforms become the application's own sliders or inputs.
     const ShaderApplication* application = nullptr;
-    /// Folder that keeps measured errors; empty: nothing is stored.
+    /// Folder that keeps errors which write_shader() measures, at most 256 MiB; empty: nothing is
+    /// stored.
     std::string cache_folder = {};
 };
 

@@ -28,6 +28,12 @@ class ElementCheck {
         // OpenColorIO would read any file named there.
         if (element_.name == "reference")
             fail("Reference is not supported; expected the transform itself");
+        const bool has_numbers =
+            element_.name == "array" || element_.name == "indexmap" || holds_numbers();
+        if (has_numbers && element_.body.find_first_of("<&") != element_.body.npos) {
+            fail(fmt::format("{} has a tag, comment or reference in it; expected numbers",
+                             printable(element_.title)));
+        }
         if (element_.name == "array") {
             check_array(numbers_of_array(sizes("Array")));
         } else if (element_.name == "indexmap") {

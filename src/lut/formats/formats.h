@@ -25,7 +25,8 @@ void check_lut(TextLines& text);
 void check_discreet_tables(TextLines& text);
 void check_cub(TextLines& text);
 void check_vf(TextLines& text);
-// XML: elements nest, and arrays have their declared size. OpenColorIO reports all other errors.
+// XML: it is well-formed, and arrays have their declared size. OpenColorIO reports the other
+// errors.
 void check_clf(TextLines& text);
 void check_cc(TextLines& text);
 

@@ -51,11 +51,14 @@ CubeText read_look(TextLines& text) {
                                [&](const XmlElement& other) { return other.title == title; });
         };
         const std::string& title = element.title;
-        const std::string body = without_quotes_and_blanks(element.body);
+        const bool has_text = title == "size" || title == "data" || title == "mask";
+        const std::string body = has_text ? without_quotes_and_blanks(element.body) : "";
         has_mask = has_mask || is_inside("mask") || (title == "mask" && !body.empty());
-        const bool is_known =
-            title == "LUT" || (is_inside("LUT") && (title == "size" || title == "data"));
-        if (is_known && !found.emplace(title, body).second)
+        if (title != "LUT" && !(is_inside("LUT") && has_text && title != "mask")) return;
+        if (body.find_first_of("<&") != body.npos)
+            text.fail(
+                fmt::format("<{}> has a tag, comment or reference in it; expected text", title));
+        if (!found.emplace(title, body).second)
             text.fail(fmt::format("<{}> appears twice; expected once", title));
     });
     if (has_mask) text.fail("it has a mask; expected a look of the whole picture");

@@ -38,14 +38,25 @@ class XmlReader {
             fail(nul, "the line holds bytes that are not text; expected a text file");
         const std::size_t first = all_.find_first_not_of(" \t\r\n");
         if (all_[first] != '<') fail(first, excerpt(first) + "; expected XML, which begins with <");
-        const XML_Status status =
-            XML_Parse(parser_.get(), all_.data(), static_cast<int>(all_.size()), XML_TRUE);
-        if (error_) std::rethrow_exception(error_);
-        if (status != XML_STATUS_OK) fail_as(XML_GetErrorCode(parser_.get()));
+        // Expat copies what it is given, and keeps a tag until it ends.
+        constexpr std::size_t kPiece = 1U << 16U;
+        constexpr std::size_t kLongestTag = 1U << 20U;
+        for (std::size_t begin = 0; begin < all_.size(); begin += kPiece) {
+            const std::string_view piece = all_.substr(begin, kPiece);
+            const std::size_t end = begin + piece.size();
+            const XML_Status status =
+                XML_Parse(parser_.get(), piece.data(), static_cast<int>(piece.size()),
+                          end == all_.size() ? XML_TRUE : XML_FALSE);
+            if (error_) std::rethrow_exception(error_);
+            if (status != XML_STATUS_OK) fail_as(XML_GetErrorCode(parser_.get()));
+            if (const std::size_t at = position(); end - at > kLongestTag)
+                fail(at, excerpt(at) + " is longer than 1 MiB; expected a shorter tag or comment");
+        }
     }
 
   private:
     static constexpr std::size_t kDeepest = 32;
+    static constexpr std::size_t kMostAttributes = 64;
 
     [[noreturn]] void fail(std::size_t at, const std::string& reason) const {
         text_.fail_at(1 + count_lines(all_.substr(0, at)), reason);
@@ -79,7 +90,18 @@ class XmlReader {
     void begin_document_type(const XML_Char*, const XML_Char*, const XML_Char*, int) {
         begin_section();
     }
-    void end(const XML_Char*) { open_.pop_back(); }
+    void end(const XML_Char*) {
+        XmlElement element = std::move(open_.back());
+        open_.pop_back();
+        // The end of an empty element is where it begins.
+        const std::size_t at = position();
+        if (element.body.data() < all_.data() + at)
+            element.body = element.body.substr(
+                0, static_cast<std::size_t>(all_.data() + at - element.body.data()));
+        else
+            element.body = {};
+        visit_(element, open_);
+    }
 
     void begin(const XML_Char* title, const XML_Char** attributes) {
         const std::size_t at = position();
@@ -93,13 +115,18 @@ class XmlReader {
         if (open_.size() == kDeepest)
             fail(at,
                  fmt::format("elements are more than {0} deep; expected at most {0}", kDeepest));
-        for (; *attributes; attributes += 2)
-            element.attributes.emplace_back(lowercase(attributes[0]), attributes[1]);
+        for (; *attributes; attributes += 2) {
+            std::string name = lowercase(attributes[0]);
+            if (element.attribute(name))
+                fail(at, fmt::format("{} stands twice; expected it once", printable(name)));
+            if (element.attributes.size() == kMostAttributes)
+                fail(at, fmt::format("<{}> has more than {} attributes; expected fewer",
+                                     printable(title), kMostAttributes));
+            element.attributes.emplace_back(std::move(name), attributes[1]);
+        }
         element.body_line = element.line + count_lines(tag);
-        if (!tag.ends_with("/>"))
-            element.body = all_.substr(at + size, all_.find('<', at + size) - at - size);
+        element.body = all_.substr(at + size);  // up to the end tag, which is not read yet
         has_root_ = true;
-        visit_(element, open_);
         open_.push_back(std::move(element));
     }
 

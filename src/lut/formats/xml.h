@@ -19,7 +19,7 @@ struct XmlElement {
     /// With names in lower case.
     std::vector<std::pair<std::string, std::string>> attributes = {};
     int line = 1;
-    /// Text from the element's tag to the next one, as the file has it.
+    /// Everything between the element's tags, as the file has it.
     std::string_view body = {};
     /// The first line of the body.
     int body_line = 1;
@@ -28,9 +28,11 @@ struct XmlElement {
 };
 
 /// Reads a file with expat, as OpenColorIO does. Refuses document types (so that no entity can be
-/// declared), CDATA sections and more than 32 open elements. Copies no text of elements.
+/// declared), CDATA sections, more than 32 open elements, and tags and comments of more than 1 MiB
+/// or 64 attributes. Needs 1 MiB of memory.
 /// @param root   name of the outermost element, in any case
-/// @param visit  receives each element when it begins, and the elements around it
+/// @param visit  receives each element when it ends, and the elements around it, without their
+/// bodies
 /// @throws FileError  with path, line and reason.
 void visit_xml(const TextLines& text, std::string_view root,
                const std::function<void(const XmlElement& element,

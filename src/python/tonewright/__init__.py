@@ -58,16 +58,26 @@ def _number(name: str, value: Any) -> float:
     return float(value)
 
 
-def _optional_index(value: Any) -> int | None:
-    return None if value is None else _operator.index(value)
+def _index(name: str, value: Any) -> int:
+    number = _operator.index(value)
+    if not -2**31 <= number < 2**31:
+        raise ValueError(f"{name} is {number}; expected a number of 32 bits")
+    return number
 
 
-def _path(name: str, value: Any) -> str:
-    return _text(name, _os.fsdecode(value))
+def _optional_index(name: str, value: Any) -> int | None:
+    return None if value is None else _index(name, value)
 
 
-def _cache(value: Any) -> str:
-    return "" if value is None else _path("cache", value)
+def _path(name: str, value: Any) -> bytes:
+    path = _os.fsencode(value)
+    if b"\0" in path:
+        raise ValueError(f"{name}: embedded null character")
+    return path
+
+
+def _cache(value: Any) -> bytes:
+    return b"" if value is None else _path("cache", value)
 
 
 def _texts(name: str, values: Any) -> list[str]:
@@ -94,15 +104,15 @@ def _file_arguments(*, settings: Mapping[str, Any] | None = None, exposure: floa
                     display: str = "srgb", look: str = "", reference_white: float = 100, input_units: str = "relative",
                     mix: float = 1, unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None,
                     alpha: str = "keep", subimage: int | str = "", layer: str = "", nthreads: int = 0, in_place: bool = False,
-                    max_pixels: float = 1e9, compression: str = "", quality: int = 0, subsampling: str = "",
+                    max_pixels: float | None = None, compression: str = "", quality: int = 0, subsampling: str = "",
                     verify_output: bool = False, resize: int | str = "") -> dict[str, Any]:
     options = _options(settings, exposure, input, display, look, reference_white)
     options.update(input_units=_text("input_units", input_units), mix=_number("mix", mix),
                    unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
     options["file"] = {"type": "" if dtype is None else _text("dtype", dtype), "alpha": _text("alpha", alpha),
-                       "nthreads": _operator.index(nthreads), "subimage": str(subimage), "layer": _text("layer", layer),
-                       "in_place": bool(in_place), "max_pixels": _number("max_pixels", max_pixels),
-                       "compression": _text("compression", compression), "quality": _operator.index(quality),
+                       "nthreads": _index("nthreads", nthreads), "subimage": str(subimage), "layer": _text("layer", layer),
+                       "in_place": bool(in_place), "max_pixels": None if max_pixels is None else _number("max_pixels", max_pixels),
+                       "compression": _text("compression", compression), "quality": _index("quality", quality),
                        "subsampling": _text("subsampling", subsampling), "verify_output": bool(verify_output),
                        "resize": str(resize)}
     return options
@@ -138,7 +148,7 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
         if not isinstance(image, _np.ndarray) or image.ndim != 3:
             raise ValueError("axis is given; expected an array of three dimensions")
         image = _np.moveaxis(image, axis, -1)
-    result = _tonewright.tonemap(image, _text("op", op), roi=roi, nthreads=_operator.index(nthreads), progress=progress,
+    result = _tonewright.tonemap(image, _text("op", op), roi=roi, nthreads=_index("nthreads", nthreads), progress=progress,
                                  resize=str(resize), **options)
     return result if axis is None else _np.moveaxis(result, -1, axis)
 
@@ -147,8 +157,8 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
                  input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
                  input_units: str = "relative", mix: float = 1, unpremult: str | bool = "auto", statistics: str = "picture",
                  dtype: str | None = None, alpha: str = "keep", subimage: int | str = "", layer: str = "",
-                 nthreads: int = 0, in_place: bool = False, max_pixels: float = 1e9, compression: str = "", quality: int = 0,
-                 subsampling: str = "", verify_output: bool = False, resize: int | str = "") -> None:
+                 nthreads: int = 0, in_place: bool = False, max_pixels: float | None = None, compression: str = "",
+                 quality: int = 0, subsampling: str = "", verify_output: bool = False, resize: int | str = "") -> None:
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
@@ -158,7 +168,7 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     subimage: part or page of the file: its number from 0 or its name (default: the first picture).
     layer: layer of an EXR file (default: R, G, B, else the first that is a picture).
     in_place: allow the target to be the source, which is lost then.
-    max_pixels: most pixels that the source may declare.
+    max_pixels: most pixels that the source may declare (default: 1e9), and the target, with what is filled (default: 1e8).
     compression: a method of the format, with ":quality" if it has one, such as "zip" or "dwaa:45" (default: the source's if
     the format has it, else the format's).
     quality: of JPEG, WebP, HEIF and AVIF, [1, 100] (default 0: the format's).
@@ -200,21 +210,35 @@ def tonemap_frames(source: Path, target: Path, op: str, frames: str | Iterable[i
 
     Example: tonewright.tonemap_frames("shot.####.exr", "shot.####.png", "hable", "1001-1100", auto_exposure="mean")
     """
-    def numbers(value: str | Iterable[int]) -> str | list[int]:
-        return value if isinstance(value, str) else [_operator.index(number) for number in value]
+    def numbers(name: str, value: str | Iterable[int]) -> str | list[int]:
+        if isinstance(value, (bytes, bytearray)):
+            raise TypeError(f"{name} must be str or a sequence of int, not {type(value).__name__}")
+        return value if isinstance(value, str) else [_index(name, number) for number in value]
 
-    if adapt and not auto_exposure:
-        raise ValueError("adapt is True; expected auto_exposure with it")
-    is_sequence = _text("statistics", statistics) == "sequence"
+    for name, value in (("adapt", adapt or None), ("key", key), ("compensation", compensation or None),
+                        ("fps", fps if fps != 24 else None)):
+        if value is not None and not auto_exposure:
+            raise ValueError(f"{name} is {value}; expected auto_exposure with it")
+    if fps != 24 and not adapt:
+        raise ValueError(f"fps is {fps}; expected adapt=True with it")
+    for name, value in (("meter_frames", meter_frames), ("meter_cache", meter_cache)):
+        if value is not None and not auto_exposure and _text("statistics", statistics).strip().lower() != "sequence":
+            raise ValueError(f'{name} is given; expected auto_exposure or statistics="sequence" with it')
+    if meter_frames is not None:
+        meter_frames = numbers("meter_frames", meter_frames)
+        if not meter_frames:
+            raise ValueError("meter_frames is empty; expected all frames of the shot")
+    if _index("jobs", jobs) < 0:
+        raise ValueError(f"jobs is {jobs}; expected 0 or more")
     return _tonewright.tonemap_frames(
         _path("source", source), _path("target", target), _text("op", op),
-        shot={"frames": numbers(frames), "missing": _text("missing", missing), "skip_existing": bool(skip_existing),
-              "jobs": _operator.index(jobs), "sequence": is_sequence, "auto_exposure": _text("auto_exposure", auto_exposure),
+        shot={"frames": numbers("frames", frames), "missing": _text("missing", missing), "skip_existing": bool(skip_existing),
+              "jobs": _index("jobs", jobs), "statistics": _text("statistics", statistics),
+              "auto_exposure": _text("auto_exposure", auto_exposure),
               "key": None if key is None else _number("key", key), "compensation": _number("compensation", compensation),
               "adapt": bool(adapt), "fps": _number("fps", fps),
-              "meter_frames": None if meter_frames is None else numbers(meter_frames),
-              "meter_cache": "" if meter_cache is None else _path("meter_cache", meter_cache)},
-        **_file_arguments(statistics="picture" if is_sequence else statistics, **options))
+              "meter_frames": meter_frames, "meter_cache": b"" if meter_cache is None else _path("meter_cache", meter_cache)},
+        **_file_arguments(**options))
 
 
 def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
@@ -256,7 +280,7 @@ def meter(image: Path | Picture, *, method: str = "log-average", key: float | No
                              _number("compensation", compensation), _number("delta", delta), _number("percentiles", low),
                              _number("percentiles", high), _text("input", input), _text("input_units", input_units),
                              _number("reference_white", reference_white), _choice("unpremult", unpremult),
-                             str(subimage), _text("layer", layer), _operator.index(nthreads),
+                             str(subimage), _text("layer", layer), _index("nthreads", nthreads),
                              _number("max_pixels", max_pixels))
 
 
@@ -324,14 +348,17 @@ def bake(op: str, file: Path, *, host: str = "", format: str | None = None, inpu
     return _tonewright.bake(_text("op", op), _path("file", file), host=_text("host", host),
                             format=None if format is None else _text("format", format),
                             input_encoding=None if input_encoding is None else _text("input_encoding", input_encoding),
-                            dimension=_optional_index(dimension), size=_optional_index(size),
+                            dimension=_optional_index("dimension", dimension), size=_optional_index("size", size),
                             max_error=None if max_error is None else _number("max_error", max_error),
-                            nodes=_text("nodes", nodes), decimals=_optional_index(decimals), depth=_optional_index(depth),
-                            icc_version=_optional_index(icc_version), cache=_cache(cache), **options)
+                            nodes=_text("nodes", nodes), decimals=_optional_index("decimals", decimals),
+                            depth=_optional_index("depth", depth), icc_version=_optional_index("icc_version", icc_version),
+                            cache=_cache(cache), **options)
 
 
 def _config_views(views: Iterable[str], displays: Iterable[str], looks: Iterable[str], custom: Mapping[str, str] | None,
                   exposure_views: Iterable[float]) -> tuple[Any, ...]:
+    if custom is not None and not isinstance(custom, Mapping):
+        raise TypeError(f"custom must be a mapping, not {type(custom).__name__}")
     return (_texts("views", views), _texts("displays", displays), _texts("looks", looks),
             [(_text("custom", name), _text("custom", op)) for name, op in (custom or {}).items()],
             [_number("exposure_views", stops) for stops in exposure_views])
@@ -355,11 +382,13 @@ def make_config(folder: Path | None, *, views: Iterable[str] = (), displays: Ite
 
     Example: tonewright.make_config("ocio_config", views=["AgX", "hable"], profiles=["2.1"])
     """
-    if folder is None and archive is None:
-        raise ValueError("folder is None; expected a folder or an archive")
-    _tonewright.make_config("" if folder is None else _path("folder", folder),
-                            "" if archive is None else _path("archive", archive), _texts("profiles", profiles),
-                            _text("working", working), *_config_views(views, displays, looks, custom, exposure_views), _cache(cache))
+    paths = {name: b"" if value is None else _path(name, value) for name, value in (("folder", folder), ("archive", archive))}
+    for name, value in (("folder", folder), ("archive", archive)):
+        if value is not None and not paths[name]:
+            raise ValueError(f"{name} is empty; expected a name")
+    _tonewright.make_config(paths["folder"], paths["archive"], _texts("profiles", profiles),
+                            _text("working", working), *_config_views(views, displays, looks, custom, exposure_views),
+                            _cache(cache))
 
 
 def change_config(config: Path, change: str = "add", *, views: Iterable[str] = (), displays: Iterable[str] = (),
@@ -401,5 +430,5 @@ def verify(operators: Iterable[str] = (), *, displays: Iterable[str] = (), input
     Example: all(row["ok"] for row in tonewright.verify(["hable"], quick=True))
     """
     return _tonewright.verify(_texts("operators", operators), _texts("displays", displays), _text("input", input),
-                              "" if config is None else _path("config", config), bool(quick), bool(gpu),
+                              b"" if config is None else _path("config", config), bool(quick), bool(gpu),
                               _texts("shaders", shaders), _cache(cache))

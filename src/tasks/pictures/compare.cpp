@@ -91,6 +91,8 @@ bool is_same_file(const std::string& a, const std::string& b) {
 std::string Comparison::Rendering::label() const { return title_of(op) + "\n" + operator_text(op); }
 
 Comparison::Comparison(ComparisonRequest request) : request_(std::move(request)) {
+    if ((request_.split || request_.difference) && request_.operators.size() != 2)
+        throw Error(Problem{.value = "a split or a difference is of two operators"});
     make_renderings();
     check_outputs();
 }

@@ -50,7 +50,9 @@ struct ComparisonRequest {
 /// Writes a contact sheet or a split picture.
 class Comparison {
   public:
-    /// @throws Error  an output is the input, or two outputs are one file
+    /// @throws Error  an output is the input, or two outputs are one file; a split or a difference
+    /// of
+    ///                other than two operators
     explicit Comparison(ComparisonRequest request);
     /// @param picture  of the request's file, with associated alpha, upright
     /// @throws PictureError  a picture that cannot be compared

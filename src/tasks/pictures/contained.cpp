@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -28,8 +29,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Message of a process: this byte and the value, or the digit of a problem's kind and its texts,
-/// each with a zero byte behind it.
+/// Message of a process: this byte and the value, or the digit of a problem's kind, its texts and
+/// its error number, each with a zero byte behind it.
 constexpr char kNoProblem = '-';
 
 template <class AnyProblem>
@@ -44,7 +45,7 @@ std::string message(const Problem& problem) {
         bytes += text->substr(0, text->find('\0'));
         bytes += '\0';
     }
-    return bytes;
+    return bytes + fmt::to_string(problem.error_number);
 }
 
 Problem problem_in(std::string_view bytes) {
@@ -55,6 +56,7 @@ Problem problem_in(std::string_view bytes) {
         *text = bytes.substr(0, end);
         bytes.remove_prefix(std::min(end + 1, bytes.size()));
     }
+    (void)std::from_chars(bytes.data(), bytes.data() + bytes.size(), problem.error_number);
     return problem;
 }
 

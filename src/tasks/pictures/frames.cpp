@@ -20,12 +20,15 @@
 #include <utility>
 
 #include "base/input_file.h"
+#include "base/strings.h"
 #include "image/picture_file.h"
 #include "image/tonemap_file.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFrames = 1'000'000;
 
@@ -69,9 +72,9 @@ std::vector<Place> places_of_number(std::string_view pattern) {
 
 }  // namespace
 
-std::vector<int> parse_frames(const std::string& text) {
+std::vector<int> parse_frames(const std::string& text, const char* parameter) {
     const auto refuse = [&] {
-        throw Error({.parameter = "frames",
+        throw Error({.parameter = parameter,
                      .value = text,
                      .expected = fmt::format(
                          "frames such as 1001-1100, 1-9x2 or 1,5,10-20, at most {}", kMostFrames)});
@@ -134,8 +137,6 @@ std::string frame_name(const char* parameter, const std::string& pattern, int fr
 
 namespace {
 
-namespace fs = std::filesystem;
-
 /// The files of a shot, some of whose frames may be missing.
 class InputFrames {
   public:
@@ -150,7 +151,7 @@ class InputFrames {
         const fs::file_type type = fs::status(name(frame), error).type();
         return known_[frame] = type != fs::file_type::not_found;
     }
-    /// The frame that replaces a missing one. It depends on the files only, not on --frames, so
+    /// The frame that replaces a missing one. It depends on the files only, not on the request, so
     /// every part of a shot gets the same frames.
     [[nodiscard]] std::optional<int> held(int frame) {
         // Frames mostly come in order: no gap is searched twice.
@@ -218,6 +219,11 @@ void check_inputs_stay(const Shot& shot, const ShotRequest& request) {
 }
 
 }  // namespace
+
+ShotRequest::Missing parse_missing(const std::string& text) {
+    return static_cast<ShotRequest::Missing>(
+        find_choice("missing", text, {"error", "skip", "hold"}));
+}
 
 Shot plan_shot(const ShotRequest& request) {
     std::set<int> known;

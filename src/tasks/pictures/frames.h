@@ -10,8 +10,9 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The frames that `1001-1100`, `1-9x2` (every second) or `1,5,10-20` name, in that order.
-/// @throws Error  of the parameter `frames`
-[[nodiscard]] std::vector<int> parse_frames(const std::string& text);
+/// @param parameter  for the message
+[[nodiscard]] std::vector<int> parse_frames(const std::string& text,
+                                            const char* parameter = "frames");
 
 /// The same frames as a text that parse_frames() takes; in order, each once.
 [[nodiscard]] std::string format_frames(std::vector<int> frames);
@@ -44,6 +45,9 @@ struct ShotRequest {
     bool skips_existing = false;
     bool is_in_place = false;
 };
+
+/// `error`, `skip` or `hold`. @throws Error  any other text
+[[nodiscard]] ShotRequest::Missing parse_missing(const std::string& text);
 
 struct Shot {
     std::vector<int> numbers;

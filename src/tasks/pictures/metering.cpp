@@ -9,9 +9,9 @@
 #include <iterator>
 #include <mutex>
 #include <set>
-#include <thread>
 
 #include "base/problem.h"
+#include "image/tonemap_file.h"
 #include "lut/in_parallel.h"
 #include "tasks/json.h"
 #include "tasks/pictures/meter_cache.h"
@@ -34,9 +34,7 @@ std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths
         ++done_count;
         if (listener.progress) listener.progress(done_count, paths.size());
     };
-    const auto all = static_cast<std::size_t>(
-        request.work.threads > 0 ? static_cast<unsigned>(request.work.threads)
-                                 : std::max(std::thread::hardware_concurrency(), 1U));
+    const auto all = static_cast<std::size_t>(thread_count(request.work.threads));
     std::vector<FileStamp> stamps(paths.size());
     std::vector<std::size_t> unknown;
     for (std::size_t i = 0; i < paths.size(); ++i) {

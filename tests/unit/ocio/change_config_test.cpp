@@ -121,6 +121,9 @@ TEST_F(ChangeConfig, WarnsBeforeItWrites) {
 
 TEST_F(ChangeConfig, FailedChangeLeavesNothing) {
     EXPECT_THROW(change_config(path_, {.kind = Kind::remove}), FileError) << "nothing was added";
+    ConfigChange one{.kind = Kind::remove};
+    one.options.views = {"hable"};
+    EXPECT_THROW(change_config(path_, one), Error) << "all are removed, not one";
     // A file is in the way of the record.
     write(folder_ / "tonewright", "a file");
     EXPECT_THROW(add(), FileError);

@@ -34,9 +34,14 @@ TEST(JsonForms, DeviationsAreWarnings) {
 }
 
 TEST(JsonForms, StepsOfAnApplicationHaveTheStyle) {
-    const std::string steps =
-        to_json(find_lut_application("resolve"), MessageStyle{}).at("steps").dump();
-    EXPECT_EQ(steps.find("<<"), std::string::npos);
+    const auto steps = [](const MessageStyle& style) {
+        return to_json(find_lut_application("unity"), style).at("steps").dump();
+    };
+    EXPECT_NE(steps({}).find("32 unless changed: size"), std::string::npos) << steps({});
+    const MessageStyle style = {.setting = [](std::string_view parameter, std::string_view) {
+        return "--" + std::string(parameter);
+    }};
+    EXPECT_NE(steps(style).find("32 unless changed: --size"), std::string::npos) << steps(style);
 }
 
 TEST(JsonForms, ResultsOfVerify) {
@@ -45,9 +50,23 @@ TEST(JsonForms, ResultsOfVerify) {
     EXPECT_STREQ(level_name(LintFinding::Level::error), "error");
     ParityRow row;
     row.op = "hable";
-    EXPECT_EQ(all_to_json(std::vector<ParityRow>{row, row}).dump(),
-              "[" + to_json(row).dump() + "," + to_json(row).dump() + "]");
-    EXPECT_EQ(to_json(row).at("ok").dump(), "true");
+    row.display = "srgb";
+    row.backend = "ocio gpu";
+    row.lowering = "chain: matrix";
+    row.max = 1;
+    row.p999 = 2;
+    row.mean = 3;
+    row.max_all = 4;
+    row.max_beyond_rounding = 5;
+    row.bound = 6;
+    row.is_mixed_metric = true;
+    row.is_ok = false;
+    row.note = "why";
+    const std::string text =
+        R"({"operator":"hable","display":"srgb","backend":"ocio gpu","lowering":"chain: matrix",)"
+        R"("max":1.0,"p999":2.0,"mean":3.0,"max_all":4.0,"max_beyond_rounding":5.0,"bound":6.0,)"
+        R"("mixed_metric":true,"ok":false,"note":"why"})";
+    EXPECT_EQ(all_to_json(std::vector<ParityRow>{row, row}).dump(), "[" + text + "," + text + "]");
     LutMatch match;
     match.op = "hable";
     match.definition = &find_operator("hable");

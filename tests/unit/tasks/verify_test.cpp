@@ -29,8 +29,18 @@ TEST(VerifyTask, RowsComeAsTheyAreMeasured) {
     EXPECT_FALSE(result.lint);
     EXPECT_TRUE(result.is_ok);
     EXPECT_EQ(result.failed, 0U);
+    ASSERT_FALSE(backends.empty());
     ASSERT_EQ(backends.size(), result.rows.size());
     EXPECT_TRUE(backends.front().starts_with("simd"));
+    // An error at the first row leaves the others unmeasured.
+    int rows = 0;
+    EXPECT_THROW((void)verify(request, {.on_row =
+                                            [&](const ParityRow&) {
+                                                ++rows;
+                                                throw Error("enough");
+                                            }}),
+                 Error);
+    EXPECT_EQ(rows, 1);
 }
 
 TEST(VerifyTask, ConfigIsCheckedBeforeItsViews) {

@@ -66,6 +66,22 @@ TEST(Clf, SizesAreLimitedBeforeAnythingIsRead) {
               "line 2: Array has no dim; expected dim=\"...\"");
 }
 
+TEST(Clf, NumbersStandAlone) {
+    // OpenColorIO joins the text around these.
+    const std::string error = " has a tag, comment or reference in it; expected numbers";
+    for (const char* inside :
+         {"0 1<Foo/> 5", "<!-- c -->0 1", "0 1<?pi?>", "0 &#49;", "0 1<!-- c -->"}) {
+        EXPECT_EQ(error_in("<LUT1D><Array dim=\"2 1\">" + std::string(inside) + "</Array></LUT1D>"),
+                  "line 2: Array" + error)
+            << inside;
+    }
+    EXPECT_EQ(error_in("<SOPNode><Slope>1 1 <!-- c -->1e99</Slope></SOPNode>"),
+              "line 2: Slope" + error);
+    EXPECT_EQ(error_in("<Matrix><IndexMap dim=\"1\">0@0<a/></IndexMap></Matrix>"),
+              "line 2: IndexMap" + error);
+    EXPECT_EQ(error_in("<!-- c --><LUT1D><Array dim=\"2 1\">0 1</Array><!-- c --></LUT1D>"), "");
+}
+
 TEST(Clf, OtherFilesAreNotOpened) {
     EXPECT_EQ(error_in("<Reference path=\"/etc/passwd\"/>"),
               "line 2: Reference is not supported; expected the transform itself");

@@ -40,7 +40,8 @@ TEST(Xml, ElementsHaveTheirAttributesBodiesAndLines) {
                       element.title == "A" ? "1>2" : "none");
             EXPECT_EQ(element.attribute("c").value_or("none"), element.title == "b" ? "<" : "none");
         });
-    EXPECT_EQ(seen, (std::vector<std::string>{"a0 3 3 \n", "b1 4 5  1 2\n", "d1 6 6 "}));
+    EXPECT_EQ(seen, (std::vector<std::string>{"b1 4 5  1 2\n", "d1 6 6 ",
+                                              "a0 3 3 \n<b\nc=\"&lt;\"> 1 2\n</b><d/>"}));
 }
 
 TEST(Xml, EntitiesAreNeverDeclared) {
@@ -112,6 +113,43 @@ TEST(Xml, DepthIsLimited) {
     };
     EXPECT_EQ(error_of(nested(32)), "");
     EXPECT_EQ(error_of(nested(33)), "line 1: elements are more than 32 deep; expected at most 32");
+}
+
+TEST(Xml, TagsAreLimited) {
+    const auto with_attributes = [](int count) {
+        std::string text = "<a";
+        for (int i = 0; i < count; ++i)
+            text += " b" + std::to_string(i) + "=''";
+        return text + "/>";
+    };
+    EXPECT_EQ(error_of(with_attributes(64)), "");
+    EXPECT_EQ(error_of(with_attributes(65)),
+              "line 1: <a> has more than 64 attributes; expected fewer");
+    EXPECT_EQ(error_of("<a b='1' B='2'/>"), "line 1: b stands twice; expected it once")
+        << "OpenColorIO ignores case";
+    // A comment may be as long as several pieces of the file, and text as long as it likes.
+    constexpr std::size_t kMiB = 1U << 20U;
+    EXPECT_EQ(error_of("<a>" + std::string(3 * kMiB, ' ') + "<!--" + std::string(kMiB / 2, 'x') +
+                       "--></a>"),
+              "");
+    for (const char* begin : {"<!--", "<b c='", "</", "<?x "}) {
+        EXPECT_NE(error_of("<a>\n" + std::string(begin) + std::string(2 * kMiB, 'x'))
+                      .find(" is longer than 1 MiB; expected a shorter tag or comment"),
+                  std::string::npos)
+            << begin;
+    }
+}
+
+TEST(Xml, BodiesReachAcrossPieces) {
+    std::string numbers;
+    while (numbers.size() < 200000)
+        numbers += "0.5 ";
+    std::size_t found = 0;
+    visit_xml(TextLines(kPath, "<a><b>" + numbers + "</b></a>"), "a",
+              [&](const XmlElement& element, const auto&) {
+                  if (element.name == "b") found = element.body.size();
+              });
+    EXPECT_EQ(found, numbers.size());
 }
 
 TEST(Xml, AnErrorOfTheVisitorComesThrough) {

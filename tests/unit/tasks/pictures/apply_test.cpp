@@ -53,6 +53,13 @@ TEST_F(ApplyFiles, LegendIsBelowThePicture) {
     const OIIO::ImageBuf shown = read_image(file("a.png"));
     EXPECT_GT(shown.spec().width, 319);
     EXPECT_GT(shown.spec().height, 120);
+    OIIO::ImageBuf alone;
+    ASSERT_TRUE(tonemapper(alone, make_rgb(320, 100)));
+    const int margin = (shown.spec().width - 320) / 2;
+    for (int c = 0; c < 3; ++c) {  // the file has 8 bits
+        EXPECT_NEAR(shown.getchannel(200 + margin, 60 + margin, 0, c),
+                    alone.getchannel(200, 60, 0, c), 1.01 / 255);
+    }
 }
 
 TEST_F(ApplyFiles, LutGetsEncodedColors) {

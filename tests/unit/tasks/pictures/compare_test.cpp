@@ -52,7 +52,20 @@ TEST_F(ComparisonFiles, SplitHasThePicturesSize) {
     wanted.has_labels = false;
     wanted.resize = "32";
     Comparison(wanted).write(make_rgb(64, 48));
-    EXPECT_EQ(read_image(file("sheet.png")).spec().width, 32);
+    wanted.operators.pop_back();
+    EXPECT_THROW(Comparison comparison(wanted), Error) << "one operator";
+    const OIIO::ImageBuf sheet = read_image(file("sheet.png"));
+    EXPECT_EQ(sheet.spec().width, 32);
+    // Each half is that of the operator alone.
+    for (const auto& [op, x] : {std::pair("hable", 8), std::pair("clamp", 24)}) {
+        ComparisonRequest alone = request({op});
+        alone.resize = "32";
+        alone.pictures = file("alone");
+        Comparison(alone).write(make_rgb(64, 48));
+        const OIIO::ImageBuf shown = read_image(file("alone/" + std::string(op) + ".png"));
+        for (int c = 0; c < 3; ++c)
+            EXPECT_EQ(sheet.getchannel(x, 12, 0, c), shown.getchannel(x, 12, 0, c)) << op;
+    }
 }
 
 TEST_F(ComparisonFiles, SheetsHaveALimit) {
@@ -64,9 +77,19 @@ TEST_F(ComparisonFiles, SheetsHaveALimit) {
 }
 
 TEST(Legend, IsBelowThePicture) {
-    const OIIO::ImageBuf shown = with_legend(make_rgb(320, 100));
+    const OIIO::ImageBuf picture = make_rgb(320, 100);
+    const OIIO::ImageBuf shown = with_legend(picture);
     EXPECT_GT(shown.spec().height, 120);
-    EXPECT_EQ(shown.nchannels(), 3);
+    ASSERT_EQ(shown.nchannels(), 3);
+    const int margin = (shown.spec().width - 320) / 2;
+    for (const auto& [x, y] : {std::pair(0, 0), std::pair(319, 99), std::pair(160, 50)}) {
+        for (int c = 0; c < 3; ++c) {
+            // Sheets have 8 bits.
+            EXPECT_NEAR(shown.getchannel(x + margin, y + margin, 0, c),
+                        picture.getchannel(x, y, 0, c), 0.51 / 255)
+                << x << " " << y;
+        }
+    }
 }
 
 }  // namespace

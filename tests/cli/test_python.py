@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pictures import evaluate, run, skip
+from pictures import evaluate, run, share_of, skip
 from sanitizers import is_sanitized
 from shots import make_shot
 
@@ -314,18 +314,20 @@ def test_config(report, tw, command, scratch):
 
 
 def test_luts(report, tw, command, scratch):
-    for options, words in (({"size": 17}, ["--size", "17"]),
-                           ({"host": "resolve"}, ["--for", "resolve"]),
-                           ({"format": "spi3d", "size": 17, "exposure": 1}, ["--format", "spi3d", "--size", "17",
-                                                                             "--exposure", "1"]),
-                           ({"dimension": 3, "size": 17, "nodes": "sampled", "decimals": 5},
-                            ["--3d", "--size", "17", "--nodes", "sampled", "--decimals", "5"]),
-                           ({"dimension": 1, "input_encoding": "linear"}, ["--1d", "--input-encoding", "linear"]),
-                           ({"dimension": 3, "max_error": 0.1}, ["--3d", "--max-error", "0.1"]),
-                           ({"host": "photoshop", "format": "icc", "icc_version": 4, "size": 17},
-                            ["--for", "photoshop", "--format", "icc", "--icc-version", "4", "--size", "17"]),
-                           ({"host": "unity", "depth": 8, "format": "strip"},
-                            ["--for", "unity", "--depth", "8", "--format", "strip"])):
+    options_and_words = [({"size": 17}, ["--size", "17"]),
+                         ({"host": "resolve"}, ["--for", "resolve"]),
+                         ({"format": "spi3d", "size": 17, "exposure": 1}, ["--format", "spi3d", "--size", "17",
+                                                                           "--exposure", "1"]),
+                         ({"dimension": 3, "size": 17, "nodes": "sampled", "decimals": 5},
+                          ["--3d", "--size", "17", "--nodes", "sampled", "--decimals", "5"]),
+                         ({"dimension": 1, "input_encoding": "linear"}, ["--1d", "--input-encoding", "linear"]),
+                         ({"dimension": 3, "max_error": 0.1, "nodes": "sampled"},
+                          ["--3d", "--max-error", "0.1", "--nodes", "sampled"]),
+                         ({"host": "photoshop", "format": "icc", "icc_version": 4, "size": 17},
+                          ["--for", "photoshop", "--format", "icc", "--icc-version", "4", "--size", "17"]),
+                         ({"host": "unity", "depth": 8, "format": "strip"},
+                          ["--for", "unity", "--depth", "8", "--format", "strip"])]
+    for options, words in share_of(options_and_words, 4):
         extension = options.get("format", "cube").replace("strip", "png")
         a, b = (scratch / f"{name}.{extension}" for name in "ab")
         result = tw.bake("hable", str(a), **options)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Dependencies between the folders of src/ run one way, and so do those between its files (a header and its source are one
-unit); this reads the #include lines. No text below the front ends has an option of the command: errors and warnings there
-refer to parameters, `<<size=65>>` (error.h).
+unit); this reads the #include lines. No string literal below the front ends names an option or a command of tonewright: errors
+and warnings there refer to parameters, `<<size=65>>` (error.h). Adjacent literals are one text, as for the compiler.
 
 Usage: layers.py SRC
 """
@@ -67,21 +67,29 @@ THIRD_PARTY = {
 }
 # They have names of their own for the parameters of a request.
 FRONT_ENDS = {"cli", "cli/pictures", "tools", "python", "plugin", "definition"}
-# Their options may have the same names as ours.
-OTHER_PROGRAMS = re.compile(r"oiiotool|mpv|glslangValidator|iscolorspace")
-# Text of the files that the command writes, for its users.
-GENERATED = {("ocio/operator_facts.cpp", "operator"), ("ocio/added_record.cpp", "into"),
-             ("ocio/added_record.cpp", "update"), ("ocio/added_record.cpp", "remove")}
+# A text that names one of them before an option is about theirs, which may have the same name.
+OTHER_PROGRAMS = re.compile(r"\b(?:oiiotool|mpv|ffmpeg|gmic|tificc)\b")
+# Lists of arguments of other programs are no texts.
+ARGUMENTS = {("shader_runs/c_compiler.cpp", "-o"), ("shader_runs/dawn.cpp", "-o"), ("shader_runs/dawn.cpp", "--quiet")}
+# File -> a file that the command writes for its users, and the options and commands that its text names.
+GENERATED = {
+    "lut/shipped_set.cpp": ("README of the shipped LUTs", ["-o", "tonewright bake", "tonewright chart", "tonewright shader"]),
+    "ocio/added_record.cpp": ("comment of a changed config", ["--into", "--update", "--remove", "tonewright config"]),
+    "ocio/config.cpp": ("README of a config", ["tonewright config"]),
+    "ocio/operator_facts.cpp": ("description of a view in a config", ["--operator"]),
+    "shader/shader.cpp": ("comment of a shader", ["tonewright verify"]),
+}
 # Headers whose types the parts behind them use: the files are one unit.
 PARTS = {
     "engine/curve_fit": "engine/compiled_curve",
     "formula/glsl_cursor": "formula/glsl", "formula/glsl_frames": "formula/glsl", "formula/glsl_parser": "formula/glsl",
 }
-# Front ends put the command's name before a message.
-COMMAND = re.compile(r'"(?:apply|bake|chart|check|compare|config|eval|import|info|list|meter|plot|report|shader|sheet|verify): ')
 # It names the config that a row of the parity table is about.
-NO_COMMAND = {"verify/verify.cpp"}
-LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
+NO_COMMAND = {("verify/verify.cpp", "config: ")}
+# A quote after a digit separates thousands.
+TOKEN = re.compile(r"""(?P<comment>//[^\n]*|/\*.*?\*/)|(?<![0-9a-fA-F])'(?:[^'\\\n]|\\.)+'
+                   |(?<!\w)(?:u8|u|U|L)?R"(?P<mark>[^\s()\\]*)\((?P<raw>.*?)\)(?P=mark)"
+                   |"(?P<plain>(?:[^"\\\n]|\\.)*)\"""", re.S | re.X)
 
 
 def folder_of(parts):
@@ -94,38 +102,70 @@ def unit_of(path):
     return PARTS.get(name, name)
 
 
-def own_options(src):
-    """The names of the options that the command declares, without --."""
-    text = "".join(path.read_text() for path in (src / "cli").glob("*.cpp"))
-    declared = re.findall(r'"(?:-\w,)?((?:--[a-z0-9-]+,?)+)"', text)
-    return {name for names in declared for name in re.findall(r"--([a-z0-9-]+)", names)}
+def own_words(src):
+    """The options that the command declares, with their dashes, and its commands."""
+    text = "".join(path.read_text() for path in sorted((src / "cli").rglob("*.cpp")))
+    declared = re.findall(r'(?<!\{)"((?:-\w|--[a-z0-9-]+)(?:,--[a-z0-9-]+)*)"', text)
+    return {name for names in declared for name in names.split(",")}, set(re.findall(r'\bprogram\s*\.add\(\s*"([a-z]+)"', text))
 
 
-def options_in(line, options):
-    if OTHER_PROGRAMS.search(line):
-        return []
-    words = [word for literal in LITERAL.findall(line) for word in re.findall(r"--([a-z0-9][a-z0-9-]*)", literal)]
-    return [word for word in words if word in options]
+def texts(code):
+    """String literals, adjacent ones joined, as lists of (line, contents); an escape sequence becomes two blanks."""
+    joined, end = [], None
+    for match in TOKEN.finditer(code):
+        raw, plain = match["raw"], match["plain"]
+        is_next = end is not None and not code[end:match.start()].strip()
+        if raw is None and plain is None:
+            end = match.end() if is_next and match["comment"] else None
+            continue
+        if not is_next:
+            joined.append([])
+        piece = raw if plain is None else re.sub(r"\\.", "  ", plain)
+        line = code.count("\n", 0, match.start()) + 1
+        joined[-1] += [(line + number, part) for number, part in enumerate(piece.splitlines(keepends=True))]
+        end = match.end()
+    return joined
+
+
+def named(code, options, commands):
+    """(line, word) for each own option, `tonewright COMMAND` and `COMMAND: ` at the beginning, of the texts of a file."""
+    any_command = "|".join(sorted(commands))
+    pattern = re.compile(rf"(?<![\w-])--?[a-z0-9][a-z0-9-]*|\btonewright\s+(?:{any_command})\b|\A(?:{any_command}): ")
+    for pieces in texts(code):
+        text = "".join(piece for _, piece in pieces)
+        for match in pattern.finditer(text):
+            word = re.sub(r"\s+", " ", match.group())
+            if word.startswith("-") and (word not in options or OTHER_PROGRAMS.search(text, 0, match.start())):
+                continue
+            at = match.start()
+            for line, piece in pieces:
+                if at < len(piece):
+                    break
+                at -= len(piece)
+            yield line, word
 
 
 def main(src: pathlib.Path) -> int:
     failures, count = [], 0
     included = {}  # units by unit
-    options = own_options(src)
-    if len(options) < 100:
-        failures.append(f"only {len(options)} options are found in cli/")
+    options, commands = own_words(src)
+    if len(options) < 120 or len(commands) < 15:
+        failures.append(f"only {len(options)} options and {len(commands)} commands are found in cli/")
+    allowed = {*ARGUMENTS, *NO_COMMAND, *((file, word) for file, (_, words) in GENERATED.items() for word in words)}
+    used = set()
     for path in sorted(src.rglob("*")):
         if path.suffix not in (".cpp", ".h"):
             continue
         parts = path.relative_to(src).parts
         folder = PUBLIC[path.stem] if parts[0] == "include" else folder_of(parts)
-        for number, line in enumerate(path.read_text().splitlines(), 1):
-            if folder not in FRONT_ENDS:
-                file = path.relative_to(src).as_posix()
-                failures += [f"{file}:{number}: a text has the option --{option}; expected <<PARAMETER=VALUE>>"
-                             for option in options_in(line, options) if (file, option) not in GENERATED]
-                if COMMAND.search(line) and file not in NO_COMMAND:
-                    failures.append(f"{file}:{number}: a text begins with a command's name; front ends put it there")
+        code, file = path.read_text(), path.relative_to(src).as_posix()
+        if folder not in FRONT_ENDS:
+            for number, word in named(code, options, commands):
+                used.add((file, word))
+                if (file, word) not in allowed:
+                    better = "front ends put it there" if word.endswith(": ") else "expected <<PARAMETER=VALUE>>"
+                    failures.append(f"{file}:{number}: a text names `{word}`; {better}")
+        for number, line in enumerate(code.splitlines(), 1):
             match = re.match(r'\s*#\s*include\s*([<"])([^>"]+)[>"]', line)
             if not match:
                 continue
@@ -147,6 +187,7 @@ def main(src: pathlib.Path) -> int:
                     failures.append(where)
             elif first in THIRD_PARTY and not {folder, "/".join(parts)} & set(THIRD_PARTY[first]):
                 failures.append(where)
+    failures += [f"layers.py: nothing needs {entry}" for entry in sorted(allowed - used)]
     try:
         graphlib.TopologicalSorter(included).prepare()
     except graphlib.CycleError as e:

@@ -32,7 +32,7 @@ std::string remedy(const LutRequest& request, const BakedLut& baked, const LutAp
         }
     }
     if (host && reads_chains(*host, LutFormat::clf) && !reads_chains(*host, request.format))
-        return "a clf or ctf file has no such errors: -o NAME.ctf";
+        return "a clf or ctf file has no such errors: <<target=NAME.ctf>>";
     // Pictures of LUTs have the sizes that their application wants.
     if (baked.lut.size < 65 && !is_picture_format(request.format) &&
         (!host || host->largest_size >= 65))

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """README, docs/, all help texts and identifiers of public headers use one vocabulary and American spelling.
 
-Comments in src/ and tests/ say what a thing is or why: they begin no line with one of BEGINNINGS.
+Comments in the .h and .cpp files of src/ and tests/ say what a thing is or why: after `//` or `/*`, also in text that a program
+writes, stands none of BEGINNINGS. Later lines of a block comment, and comments in other languages, are not read.
 
 Usage: words.py TONEWRIGHT
 
@@ -68,8 +69,8 @@ ALLOWED = [
     ("tonewright/lut.h", "Lut Format::cube", "the name of a format"),
 ]
 
-# Words at the start of a comment's line that hide its subject.
-BEGINNINGS = re.compile(r"//[/!]?<?\s*(Of|What|Where|Whether|As|How)\b")
+# Words at the start of a comment that hide its subject.
+BEGINNINGS = re.compile(r"(?://[/!]?|/\*+!?)<?\s*(Of|What|Where|Whether|As|How)\b")
 
 
 def prose(text):

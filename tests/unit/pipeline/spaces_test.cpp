@@ -27,7 +27,8 @@ Vector3 multiplied_by_hand(const double (&m)[9], const Vector3& v) {
 
 TEST(View, InputSpacesAreConverted) {
     // Saturated, inside Rec.709, and no two channels alike: a transposed or inverted matrix shows.
-    // ACEScg -> Rec.709 (Bradford) in the ten digits of python_check/operators.py, rgb_to_rgb.
+    // ACEScg -> Rec.709 (Bradford) in the ten digits of python_check/operators/spaces.py,
+    // rgb_to_rgb.
     const double ap1[9] = {1.7050509927,  -0.6217921207, -0.0832588720,  //
                            -0.1302564175, 1.1408047366,  -0.0105483191,  //
                            -0.0240033568, -0.1289689761, 1.1529723329};

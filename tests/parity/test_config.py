@@ -7,7 +7,6 @@ The views' own numbers are `tonewright verify`; here they go through check_confi
 """
 
 import re
-import shutil
 import subprocess
 
 import check_config
@@ -15,7 +14,7 @@ import lut_encodings
 import numpy as np
 import operators
 import pytest
-from pictures import PROJECT, run
+from pictures import PROJECT, need_program, run
 
 ocio = pytest.importorskip("PyOpenColorIO", reason="PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
 
@@ -33,7 +32,7 @@ ALIASES = {"Linear": "Linear Rec.709", "linear": "Linear Rec.709", "lin_srgb": "
            "Rec.1886 - Display": "Rec.1886", "g22_ap1_tx": "Gamma 2.2 AP1 - Texture",
            "arri_logc3_ei800": "ARRI LogC3 (EI800)", "arri_logc4": "ARRI LogC4", "KodakLog": "Cineon", "acescct_ap1": "ACEScct", "displayp3_display": "Display P3",
            "rec2100_pq_display": "Rec.2100-PQ", "out_agx_srgb": "Output - AgX - sRGB"}
-# space of the config -> primaries in python_check/operators.py
+# space of the config -> primaries in python_check/operators/spaces.py
 LINEAR = {"Linear Rec.709": "rec709", "ACEScg": "ap1", "ACES2065-1": "ap0", "Linear Rec.2020": "rec2020",
           "Linear P3-D65": "p3d65", "Linear FilmLight E-Gamut": "egamut"}
 # FilmLight E-Gamut, 2018: the one space that no operator there needs.
@@ -83,9 +82,7 @@ def config(folder):
 
 
 def test_ociocheck(report, folder):
-    if not shutil.which("ociocheck"):
-        print("skipped: ociocheck is not installed (Debian: opencolorio-tools)")
-        return
+    need_program("ociocheck", "opencolorio-tools")
     done = subprocess.run(["ociocheck", "--iconfig", folder / "config.ocio"], capture_output=True, text=True, check=False)
     lines = (done.stdout + done.stderr).splitlines()
     bad = [line for line in lines if re.search("warn|error|fail", line, re.I)]

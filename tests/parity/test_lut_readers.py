@@ -163,7 +163,13 @@ FFMPEG_FILES = {("a.cube", "Adobe's"): "lut3d", ("a.cube", "CRLF"): "lut3d", ("a
                 ("a.csp", "3D"): "lut3d"}
 
 
-ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)
+@pytest.fixture(scope="module", autouse=True)
+def logging_level():
+    """OpenColorIO prints nothing about files that it refuses."""
+    level = ocio.GetLoggingLevel()
+    ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_NONE)
+    yield
+    ocio.SetLoggingLevel(level)
 
 
 def of_ours(command, path):

@@ -39,6 +39,15 @@ AMF_IDS = {("ACES 2.0", "sRGB"): AMF + "v2.0:Output.Academy.Rec709-D65_100nit_in
            ("ACES 1.3 - HDR 1000 nits", "Rec.2100-PQ"): AMF + "v1.5:RRTODT.Academy.Rec2020_1000nits_15nits_ST2084.a1.1.0"}
 
 
+@pytest.fixture(scope="module", autouse=True)
+def logging_level():
+    """OpenColorIO's warnings are messages, whatever level another file has set."""
+    level = ocio.GetLoggingLevel()
+    ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_WARNING)
+    yield
+    ocio.SetLoggingLevel(level)
+
+
 @contextlib.contextmanager
 def logged():
     """OpenColorIO's messages."""

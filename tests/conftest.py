@@ -106,9 +106,9 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="session", autouse=True)
 def no_folders_left(request, tmp_path_factory):
-    """Removes the folders of all tests, unless one of them has failed."""
+    """Removes the folders of all tests, unless one of them has failed, or --basetemp names their place."""
     yield
-    if not request.session.testsfailed:
+    if not request.session.testsfailed and not request.config.option.basetemp:
         shutil.rmtree(tmp_path_factory.getbasetemp(), ignore_errors=True)
 
 

@@ -59,10 +59,13 @@ def command(request):
 
 def built_folder(request, name, pattern):
     """A folder that an option names, else one of the command's build."""
-    folder = request.config.getoption(name) or next(request.getfixturevalue("command").parents[1].glob(pattern), None)
-    if folder is None:
+    given = request.config.getoption(name)
+    folders = [given] if given else sorted(request.getfixturevalue("command").parents[1].glob(pattern))
+    if not folders:
         pytest.skip(f"{name} names no folder, and the build has no {pattern}")
-    return folder.resolve()
+    if len(folders) > 1:
+        pytest.exit(f"{name} names no folder, and the build has {', '.join(f.name for f in folders)}; expected one", returncode=2)
+    return folders[0].resolve()
 
 
 @pytest.fixture(scope="session")

@@ -15,6 +15,7 @@ import signal
 import sys
 from pathlib import Path
 
+import pictures
 import pytest
 
 from pictures import ALL, SKIPPED, Report, share_of
@@ -40,6 +41,7 @@ def pytest_configure(config):
     os.environ.pop("OCIO", None)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it, and so would their commands
     config.checks = Report()
+    pictures.runs_in_pytest = True
     if folder := config.getoption("--screenshots"):
         folder.mkdir(parents=True, exist_ok=True)
 

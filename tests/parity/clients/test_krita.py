@@ -1,24 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Krita with the OpenColorIO config against `tonewright apply`: what its LUT docker lists, and what its canvas shows.
 
-    python3 tests/parity/clients/test_krita.py build/release/bin/tonewright
+    python3 -m pytest tests/parity/clients/test_krita.py --tonewright build/release/bin/tonewright
 
 Krita runs on a screen that nobody sees, with settings of its own in a folder that is deleted, and is driven by a plugin
 in its Python (Debian: krita, python3-pyqt5, xvfb): the docker's lists are chosen from as a user does, and the canvas is
-read back from Mesa's software renderer. The config is ocio_config/ of the working directory. The last line is
-`N passed, M failed`.
+read back from Mesa's software renderer.
 """
 
-import argparse
 import json
 import os
 import subprocess
-import tempfile
-from pathlib import Path
 
 import numpy as np
 
-from pictures import Report, nearest_of_bytes, need_program, read_rgb, run, screen, skip
+from pictures import PROJECT, nearest_of_bytes, need_program, read_rgb, run, screen, skip
 from test_blender import DISPLAYS, HDR, OPERATORS
 from test_ocioconvert import gpu_bound
 
@@ -206,38 +202,28 @@ def check_lists(report, lists):
     report.check("the views of Rec.2100-PQ", "AgX" + HDR in views and "AgX" not in views and "Hable" in views, views)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("command", type=Path)
-    command = parser.parse_args().command.resolve()
+def test_views(report, command, scratch):
     need_program("krita", "krita")
     qt = subprocess.run(["/usr/bin/python3", "-c", "import PyQt5.QtWidgets"], capture_output=True, check=False)
     if qt.returncode:  # Krita has the Python of the system
         skip("Krita's Python has no PyQt5 (Debian: python3-pyqt5)")
-    config = Path("ocio_config/config.ocio").resolve()
-    report = Report()
-    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder, screen("1600x1000") as display:
+    config = PROJECT / "ocio_config/config.ocio"
+    picture = scratch / "chart.exr"
+    run(command, "chart", "-o", picture, "--width", WIDTH, "--height", HEIGHT)
+    jobs = [(*job, str(scratch / f"{number}.png")) for number, job in enumerate(JOBS)]
+    with screen("1600x1000") as display:
         if not display:
             skip("no X server without a screen: Xvfb (Debian: xvfb)")
-        scratch = Path(folder)
-        picture = scratch / "chart.exr"
-        run(command, "chart", "-o", picture, "--width", WIDTH, "--height", HEIGHT)
-        jobs = [(*job, str(scratch / f"{number}.png")) for number, job in enumerate(JOBS)]
         found = ask_krita(display, config, picture, jobs, scratch)
-        print(f"Krita {found['version']}")
-        document = found["document"]
-        report.check("the picture is of floats", document == ["RGBA", "F32", WIDTH, HEIGHT], document)
-        check_lists(report, found["lists"])
-        for engine, display, view, look, path in jobs:
-            operator = OPERATORS["AgX Punchy" if look != "None" else view.split(HDR)[0]]
-            run(command, "apply", picture, scratch / "expected.exr", "--operator", *operator,
-                "--statistics", "defaults", "--display", DISPLAYS[display], "-d", "float")
-            expected = read_rgb(scratch / "expected.exr", scratch)
-            shown = of_canvas(path, scratch)
-            report.compare(f"{engine}, {display}, {view}{'' if look == 'None' else ', look ' + look}",
-                           nearest_of_bytes(shown, expected), expected, gpu_bound(config, view))
-    return report.finish()
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+    print(f"Krita {found['version']}")
+    document = found["document"]
+    report.check("the picture is of floats", document == ["RGBA", "F32", WIDTH, HEIGHT], document)
+    check_lists(report, found["lists"])
+    for engine, display, view, look, path in jobs:
+        operator = OPERATORS["AgX Punchy" if look != "None" else view.split(HDR)[0]]
+        run(command, "apply", picture, scratch / "expected.exr", "--operator", *operator,
+            "--statistics", "defaults", "--display", DISPLAYS[display], "-d", "float")
+        expected = read_rgb(scratch / "expected.exr", scratch)
+        shown = of_canvas(path, scratch)
+        report.compare(f"{engine}, {display}, {view}{'' if look == 'None' else ', look ' + look}",
+                       nearest_of_bytes(shown, expected), expected, gpu_bound(config, view))

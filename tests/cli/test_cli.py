@@ -42,10 +42,10 @@ FLOAT32 = 1e-6  # the SIMD engine, and a file of floats
 DISK_FULL = ["sh", "-c", 'trap "" XFSZ; ulimit -f 20; exec "$0" "$@"']
 
 
-def call(command, arguments, stdin="", folder=None, prefix=()):
-    """(exit code, standard output, standard error)"""
+def call(command, arguments, stdin="", folder=None, prefix=(), timeout=None):
+    """(exit code, standard output, standard error). @throws subprocess.TimeoutExpired  after timeout seconds"""
     done = subprocess.run([*prefix, str(command), *map(str, arguments)], input=stdin.encode(), cwd=folder,
-                          capture_output=True, check=False)
+                          capture_output=True, check=False, timeout=timeout)
     return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
 
 
@@ -345,6 +345,18 @@ def test_limits(report, command, scratch, picture):
                 (code, err) == (OK, "") if limit > 300000 else
                 code == FILE and err.startswith("tonewright: ") and err.count("\n") == 1 and "not enough memory" in err),
                 f"exit {code}: {err}")
+        # Near the edge the command works, says in one line why it does not, or waits forever. It leaves no partial file.
+        for limit in (455000, 485000):
+            try:
+                code, out, err = call(command, ["apply", picture, "x.png", "--operator", "hable"], folder=scratch,
+                                      prefix=["sh", "-c", f'ulimit -v {limit}; exec "$0" "$@"'], timeout=20)
+            except subprocess.TimeoutExpired:
+                code, out, err = None, "", ""
+            if code == OK:
+                (scratch / "x.png").unlink(missing_ok=True)
+            report.check(f"addresses limited to {limit} kB: no partial file", not out and not os.listdir(scratch) and (
+                (code, err) in ((OK, ""), (None, "")) or
+                code == FILE and err.startswith("tonewright: ") and err.count("\n") == 1), f"exit {code}: {err}{os.listdir(scratch)}")
     with subprocess.Popen([command, "config", "-o", scratch / "new" / "config", "--views", "all"],
                           stderr=subprocess.DEVNULL) as process:
         while not (scratch / "new" / "config").exists() and process.poll() is None:

@@ -70,7 +70,8 @@ ALLOWED = [
 ]
 
 # Words at the start of a comment that hide its subject.
-BEGINNINGS = re.compile(r"(?://[/!]?|/\*+!?)<?\s*(Of|What|Where|Whether|As|How)\b")
+# Texts of generated files begin with a quotation mark.
+BEGINNINGS = re.compile(r"(?<!\")(?://[/!]?|/\*+!?)<?\s*(Of|What|Where|Whether|As|How)\b")
 
 
 def prose(text):

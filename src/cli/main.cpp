@@ -50,7 +50,7 @@ bool is_about_memory_now() {
 /// If memory runs out in a function that must not throw, or while another exception is handled, the
 /// process ends as for any other lack of memory. Nothing here allocates.
 [[noreturn]] void end_without_memory() {
-    if (is_about_memory_now()) {
+    if (is_about_memory_now() || is_loading_under_limit()) {
         // Prints one line, also if several threads come here.
         static std::atomic_flag is_ending = ATOMIC_FLAG_INIT;
         while (is_ending.test_and_set())

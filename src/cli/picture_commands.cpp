@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -27,6 +28,8 @@ std::optional<double> address_limit() {
     return static_cast<double>(limit.rlim_cur) / 1e6;
 }
 
+std::atomic<bool> is_loading = false;
+
 /// The module stays loaded until the process ends.
 const PictureCommands& load() {
     namespace fs = std::filesystem;
@@ -41,7 +44,9 @@ const PictureCommands& load() {
     const std::optional<double> limit = address_limit();
     // Each further arena of malloc reserves 64 to 128 MB of addresses for a thread.
     if (limit) ::mallopt(M_ARENA_MAX, 1);
+    is_loading = limit.has_value();
     void* module = ::dlopen(path.c_str(), kBinding);
+    is_loading = false;
     // A module that is there does not load for lack of addresses, where they are limited.
     if (!module && limit && ::access(path.c_str(), R_OK) == 0) {
         fail(
@@ -60,6 +65,8 @@ const PictureCommands& load() {
 }
 
 }  // namespace
+
+bool is_loading_under_limit() noexcept { return is_loading; }
 
 const PictureCommands& picture_commands() {
     static const PictureCommands& commands = load();

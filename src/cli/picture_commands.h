@@ -55,6 +55,10 @@ class PictureCommands {
 /// @throws FileError  it is missing, cannot be loaded, or is from another build
 [[nodiscard]] const PictureCommands& picture_commands();
 
+/// True while the module is being loaded under a limit of addresses (ulimit -v): libraries below
+/// OpenImageIO that get no thread then end the process.
+[[nodiscard]] bool is_loading_under_limit() noexcept;
+
 /// Entry point of the module.
 /// @param build   kPictureCommandsBuild of the program
 /// @returns       null if the module was built with another interface or version

@@ -203,7 +203,7 @@ class Package {
             types_["threejs"];
         types_["tsl"] =
             "import type { wgslFn } from 'three/tsl';\n\n"
-            "/** Takes a color and an exposure, which is a factor. */\n"
+            "/** Of a color and an exposure, a factor. */\n"
             "type NodeFunction = ReturnType<typeof wgslFn>;\n" +
             types_["tsl"];
         Json exports = Json::object();

@@ -346,7 +346,7 @@ def test_limits(report, command, scratch, picture):
                 code == FILE and err.startswith("tonewright: ") and err.count("\n") == 1 and "not enough memory" in err),
                 f"exit {code}: {err}")
         # Near the edge the command works, says in one line why it does not, or waits forever. It leaves no partial file.
-        for limit in (455000, 485000):
+        for limit in (410000, 485000):
             try:
                 code, out, err = call(command, ["apply", picture, "x.png", "--operator", "hable"], folder=scratch,
                                       prefix=["sh", "-c", f'ulimit -v {limit}; exec "$0" "$@"'], timeout=20)

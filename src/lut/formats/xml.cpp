@@ -64,10 +64,12 @@ class XmlReader {
     [[nodiscard]] std::string excerpt(std::size_t at) const {
         return printable(first_line(all_.substr(at, 100)));
     }
-    [[nodiscard]] std::size_t position() const {
-        return std::min(static_cast<std::size_t>(
-                            std::max<XML_Index>(XML_GetCurrentByteIndex(parser_.get()), 0)),
-                        all_.size());
+    /// Where the last event begins. Expat gives -1 while it waits for the rest of a tag (2.6, and
+    /// 2.5 with Debian's security updates).
+    [[nodiscard]] std::size_t position() {
+        const XML_Index at = XML_GetCurrentByteIndex(parser_.get());
+        if (at >= 0) position_ = std::min(static_cast<std::size_t>(at), all_.size());
+        return position_;
     }
 
     /// No exception passes through expat. It may call once more after it is stopped.
@@ -131,7 +133,7 @@ class XmlReader {
     }
 
     /// In our words, where expat's are of little help.
-    [[noreturn]] void fail_as(XML_Error error) const {
+    [[noreturn]] void fail_as(XML_Error error) {
         if (error == XML_ERROR_NO_MEMORY) throw std::bad_alloc();
         const std::size_t at = position();
         const std::string_view rest = all_.substr(at);
@@ -194,6 +196,7 @@ class XmlReader {
     std::string_view root_;
     const Visit& visit_;
     std::vector<XmlElement> open_;
+    std::size_t position_ = 0;
     bool has_root_ = false;
     std::exception_ptr error_;
 };

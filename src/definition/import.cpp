@@ -74,7 +74,6 @@ class Stages {
     [[nodiscard]] std::vector<StageRecipe> stages() const {
         return {stages_.rbegin(), stages_.rend()};
     }
-    [[nodiscard]] const std::vector<PartNames::Entry>& names() const { return texts_; }
     [[nodiscard]] const GlslFunction& function() const { return function_; }
 
   private:
@@ -110,10 +109,13 @@ class Stages {
             stage.f.resize(1, 0);
             before = take_clamp(stage.f);
         }
+        PartNames texts;
         for (const Expr& e : nodes_of(stage.f)) {
             if (const auto named = names_.find(e.node()); named != names_.end())
-                texts_.push_back({e, text_of(*named->second, is_curve)});
+                texts.add(text_of(*named->second, is_curve), e);
         }
+        for (Expr& e : stage.f)
+            e = texts.on(e);
         add(std::move(stage));
         // The first stage of all clamps to [0, 65504].
         if (before && (first != 0 || before->lo > 0 || before->hi < kHalfMax))
@@ -229,7 +231,6 @@ class Stages {
     GlslFunction function_;
     std::unordered_map<const ExprNode*, const GlslName*> names_;
     std::vector<StageRecipe> stages_;
-    std::vector<PartNames::Entry> texts_;
     std::vector<Expr> kept_;
 };
 
@@ -356,7 +357,6 @@ std::shared_ptr<const OperatorRecipe> recipe_of(const Stages& made, Operator& op
     limit.hi = kHalfMax;
     limit.at = at;
     recipe->stages = made.stages();
-    recipe->names = made.names();
     recipe->stages.insert(recipe->stages.begin(), limit);
     if (output == Output::srgb) {
         StageRecipe decode;

@@ -136,7 +136,6 @@ class Reader {
     }
 
     std::shared_ptr<const Operator> read() {
-        const PartNames names;
         const Value root = parse_toml(text_);
         const Table file(root, "",
                          {"tonewright", "id", "title", "view", "character", "source", "license",
@@ -150,7 +149,6 @@ class Reader {
         recipe_->stages = read_stages(file, "stage");
         if (recipe_->stages.empty()) fail({}, "file has no [[stage]]; expected at least one");
         recipe_->inverse = read_stages(file, "inverse");
-        recipe_->names = names.all();
         read_declarations(file);
         op_.parameters = recipe_->parameters;
         set_functions();

@@ -175,8 +175,6 @@ std::vector<const StageRecipe*> stages_used(const OperatorRecipe& recipe,
 
 Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecipe>& stages,
                       const Params& params) {
-    for (const PartNames::Entry& entry : recipe.names)
-        PartNames::add(entry.name, entry.part);
     const UniformValues values = values_of(recipe, params);
     Pipeline pipeline;
     std::array<std::vector<double>, 3> rgb = sample_colors();

@@ -52,8 +52,6 @@ struct OperatorRecipe {
     std::optional<Expr> peak;
     Primaries output_primaries{};
     std::vector<ParameterSpec> parameters;
-    /// For temporaries.
-    std::vector<PartNames::Entry> names;
     std::vector<std::string> looks;
 };
 

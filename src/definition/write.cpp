@@ -315,7 +315,6 @@ class Writer {
 }  // namespace
 
 std::string definition_of(const ResolvedOperator& op) {
-    const PartNames names;
     try {
         return Writer(op).write();
     } catch (const FileError&) {

@@ -17,9 +17,11 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
+using Rebuilt = std::unordered_map<const ExprNode*, Expr>;
+
 /// Rebuilds an expression bottom-up, each shared node once.
 template <class Leaf>
-Expr rebuild(const Expr& e, const Leaf& leaf, std::unordered_map<const ExprNode*, Expr>& done) {
+Expr rebuild(const Expr& e, const Leaf& leaf, Rebuilt& done) {
     if (auto it = done.find(e.node()); it != done.end()) return it->second;
     Expr result = e;
     if (e.op() == ExprOp::input || e.op() == ExprOp::uniform) {
@@ -33,10 +35,27 @@ Expr rebuild(const Expr& e, const Leaf& leaf, std::unordered_map<const ExprNode*
         result = e.op() == ExprOp::grid
                      ? interpolate(e.grid(), e.channel(), operands[0], operands[1], operands[2])
                      : make_expr(e.op(), operands, e.table());
-        PartNames::move(e, result);
     }
     done.emplace(e.node(), result);
     return result;
+}
+
+/// @param leaf   gives an expression without names for an input or a uniform
+/// @param names  of what leaf() gives; those of the expression are added
+template <class Leaf>
+Expr rebuild(const Expr& e, const Leaf& leaf, PartNames names) {
+    Rebuilt done;
+    const Expr result = rebuild(PartNames().on(e), leaf, done);
+    const PartNames own(Span<const Expr>(&e, 1));
+    for (const auto& [part, name] : own.all()) {
+        const auto found = done.find(part.node());
+        if (found == done.end() || same(found->second, part)) {
+            names.add(name, part);
+        } else if (!names.of(found->second)) {
+            names.add(name, found->second);
+        }
+    }
+    return names.on(result);
 }
 
 double evaluate_node(const Expr& e, std::span<const double> inputs,
@@ -178,19 +197,17 @@ double sign_change(const Expr& f, double lo, double hi) {
 }  // namespace
 
 Expr substitute(const Expr& expr, Span<const Expr> inputs) {
-    std::unordered_map<const ExprNode*, Expr> done;
     return rebuild(
         expr,
         [&](const Expr& leaf) {
             if (leaf.op() == ExprOp::uniform) return leaf;
             const auto i = static_cast<std::size_t>(leaf.input_index());
-            return i < inputs.size() ? inputs[i] : leaf;
+            return i < inputs.size() ? PartNames().on(inputs[i]) : leaf;
         },
-        done);
+        PartNames(inputs));
 }
 
 Expr bind_uniforms(const Expr& expr, const UniformValues& values) {
-    std::unordered_map<const ExprNode*, Expr> done;
     return rebuild(
         expr,
         [&](const Expr& leaf) -> Expr {
@@ -198,7 +215,7 @@ Expr bind_uniforms(const Expr& expr, const UniformValues& values) {
             const auto found = values.find(leaf.uniform_name());
             return found == values.end() ? leaf : Expr(found->second);
         },
-        done);
+        PartNames());
 }
 
 std::vector<Expr> nodes_of(Span<const Expr> exprs) {

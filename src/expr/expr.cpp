@@ -15,6 +15,7 @@
 #include "base/format_number.h"
 #include "expr/grid_place.h"
 #include "expr/node.h"
+#include "expr/part_name_list.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/error.h"
 
@@ -237,27 +238,34 @@ const std::shared_ptr<const Table>& Expr::table() const noexcept { return node_-
 const std::shared_ptr<const Grid>& Expr::grid() const noexcept { return node_->grid; }
 int Expr::channel() const noexcept { return node_->input; }
 int Expr::operand_count() const noexcept { return static_cast<int>(node_->operands.size()); }
-Expr Expr::operand(int i) const { return node_->operands[static_cast<std::size_t>(i)]; }
+Expr Expr::operand(int i) const {
+    return Expr(node_->operands[static_cast<std::size_t>(i)].node_, names_);
+}
 
 Expr make_expr(ExprOp op, Span<const Expr> in, std::shared_ptr<const Table> table) {
     bool all_constant = true;
-    for (const Expr& e : in)
+    std::shared_ptr<const PartNameList> names;
+    for (const Expr& e : in) {
         all_constant = all_constant && e.is_constant();
+        names = joined(names, e.names_);
+    }
     if (all_constant) {
         const double a = in[0].value();
         const double b = in.size() > 1 ? in[1].value() : 0;
         const double c = in.size() > 2 ? in[2].value() : 0;
-        return scalar_op(op, a, b, c, table.get());
+        return Expr(Expr(scalar_op(op, a, b, c, table.get())).node_, std::move(names));
     }
     Expr zero(0.0);
-    if (const Expr* simpler = neutral(op, in, zero)) return *simpler;
+    if (const Expr* simpler = neutral(op, in, zero)) return Expr(simpler->node_, std::move(names));
     if (op == ExprOp::negate && in[0].op() == ExprOp::negate) return in[0].operand(0);
 
     ExprNode node;
     node.op = op;
-    node.operands.assign(in.begin(), in.end());
+    // Other expressions share the node: it holds no names.
+    for (const Expr& e : in)
+        node.operands.push_back(Expr(e.node_));
     node.table = std::move(table);
-    return Expr(share(std::move(node)));
+    return Expr(share(std::move(node)), std::move(names));
 }
 
 namespace {
@@ -309,9 +317,9 @@ Expr interpolate(std::shared_ptr<const Grid> grid, int channel, const Expr& r, c
     ExprNode node;
     node.op = ExprOp::grid;
     node.input = channel;
-    node.operands = {r, g, b};
+    node.operands = {Expr(r.node_), Expr(g.node_), Expr(b.node_)};
     node.grid = std::move(grid);
-    return Expr(share(std::move(node)));
+    return Expr(share(std::move(node)), joined(joined(r.names_, g.names_), b.names_));
 }
 
 Expr exp(const Expr& a) { return exp2(a * std::numbers::log2e); }

@@ -228,10 +228,10 @@ class Parser {
             fail(name.begin, "name " + own + " is a function; expected another name");
         next();
         next();  // =
-        const FormulaValue value = expression(kChoice);
+        FormulaValue value = expression(kChoice);
         end_line();
-        temporaries_.emplace(own, value);
-        PartNames::add(own, value.value);
+        value.value = named(own.c_str(), value.value);
+        temporaries_.emplace(own, std::move(value));
     }
 
     void end_line() {

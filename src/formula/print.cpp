@@ -26,7 +26,7 @@ std::string bracketed(const Text& t, Precedence needed) {
 class Printer {
   public:
     Printer(Span<const Expr> exprs, const std::vector<std::string>& inputs)
-        : inputs_(inputs), taken_(inputs.begin(), inputs.end()) {
+        : names_(exprs), inputs_(inputs), taken_(inputs.begin(), inputs.end()) {
         const std::vector<Expr> nodes = nodes_of(exprs);
         std::unordered_map<const ExprNode*, int> uses;
         for (const Expr& e : nodes) {
@@ -46,7 +46,7 @@ class Printer {
             constexpr std::size_t kLongest = 76;
             const bool is_leaf = e.operand_count() == 0;
             const bool is_long = text.text.size() > kLongest && !is_value(e);
-            const bool has_name = PartNames::of(e) && !is_value(e);
+            const bool has_name = names_.of(e) && !is_value(e);
             if (!is_leaf && (uses[e.node()] > 1 || is_long || has_name)) text = set(e, text);
             texts_.emplace(e.node(), std::move(text));
         }
@@ -65,7 +65,7 @@ class Printer {
     }
 
     Text set(const Expr& e, const Text& value) {
-        const std::string* const wanted = PartNames::of(e);
+        const std::string* const wanted = names_.of(e);
         std::string name = wanted ? *wanted : "";
         if (wanted) {
             for (int i = 2; taken_.contains(name) || is_formula_function(name); ++i)
@@ -159,6 +159,7 @@ class Printer {
         return {};
     }
 
+    PartNames names_;
     const std::vector<std::string>& inputs_;
     std::set<std::string> taken_;
     std::unordered_map<const ExprNode*, Text> texts_;

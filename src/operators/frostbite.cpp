@@ -69,11 +69,10 @@ CrossTalkStage frostbite_mapping(const Expr& linear_end) {
     const std::array<Expr, 3> in = to_ictcp(compose({}));
     const Expr intensity = named("intensity", in[0]);
     const Expr saturation = named("saturation", pow(smoothstep(1, 0.3, intensity), 1.3));
-    const std::array<Expr, 3> c =
-        to_rgb({intensity, named("faded_ct", saturation * named("ct", in[1])),
-                named("faded_cp", saturation * named("cp", in[2]))});
-    for (const Expr& v : c)
-        (void)named("faded", v);
+    std::array<Expr, 3> c = to_rgb({intensity, named("faded_ct", saturation * named("ct", in[1])),
+                                    named("faded_cp", saturation * named("cp", in[2]))});
+    for (Expr& v : c)
+        v = named("faded", v);
 
     const Expr largest = named("largest", max(max(c[0], c[1]), c[2]));
     const Expr ratio = named("ratio", select(less(largest, linear_end), 1,

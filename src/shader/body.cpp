@@ -136,8 +136,9 @@ FunctionBody::FunctionBody(const LanguageFacts& language, std::vector<std::strin
       tables_(std::move(tables)) {}
 
 void FunctionBody::count(const Expr& e) {
+    parts_.take(e);
     if (++uses_[e.node()] > 1) return;
-    if (const std::string* name = PartNames::of(e); name && !is_leaf(e))
+    if (const std::string* name = parts_.of(e); name && !is_leaf(e))
         named_[*name].push_back(e.node());
     if (const auto name = e.is_constant() ? names_.find(e.value()) : names_.end();
         name != names_.end()) {
@@ -164,7 +165,7 @@ FunctionBody::Text FunctionBody::print(const Expr& e) {
     if (const auto known = known_.find(e.node()); known != known_.end()) return known->second;
     Text text = compose(e);
     // Names of the source become variables.
-    if (is_leaf(e) || (uses_[e.node()] < 2 && !PartNames::of(e))) return text;
+    if (is_leaf(e) || (uses_[e.node()] < 2 && !parts_.of(e))) return text;
     const std::string name = name_for(e);
     add_line(text.is_condition ? language_.boolean : language_.number, name, text.text);
     text = {name, kAtom, text.is_condition};
@@ -333,7 +334,7 @@ std::string FunctionBody::choose(const Expr& e) {
 }
 
 std::string FunctionBody::name_for(const Expr& e) {
-    if (const std::string* name = PartNames::of(e)) {
+    if (const std::string* name = parts_.of(e)) {
         // Per-channel expressions of a source have the same name three times.
         const std::vector<const ExprNode*>& alike = named_[*name];
         const auto place = std::find(alike.begin(), alike.end(), e.node()) - alike.begin();

@@ -69,6 +69,7 @@ class FunctionBody {
     std::map<const void*, TableText> tables_;
     std::unordered_map<const ExprNode*, int> uses_;
     std::unordered_map<const ExprNode*, Text> known_;
+    PartNames parts_;
     /// Parts by their name.
     std::map<std::string, std::vector<const ExprNode*>> named_;
     /// For powers of a variable by multiplication: the variable and the exponent.

@@ -68,18 +68,26 @@ Interval FloatForm::range(const Expr& e) {
 }
 
 Expr FloatForm::operator()(const Expr& e) {
+    names_.take(e);
+    const Expr result = rewritten(PartNames().on(e));
+    return names_.on(result);
+}
+
+Expr FloatForm::rewritten(const Expr& e) {
     if (e.operand_count() == 0) return e;
     if (const auto known = rewritten_.find(e.node()); known != rewritten_.end())
         return known->second;
-    Expr result = rewrite(e);
-    PartNames::move(e, result);
+    const Expr named_result = rewrite(e);
+    names_.take(named_result);
+    Expr result = PartNames().on(named_result);
+    names_.move(e, result);
     keep_.push_back(e);
     rewritten_.emplace(e.node(), result);
     return result;
 }
 
 Expr FloatForm::rewrite(const Expr& e) {
-    const auto part = [&](int i) { return (*this)(e.operand(i)); };
+    const auto part = [&](int i) { return rewritten(e.operand(i)); };
     switch (e.op()) {
         case ExprOp::power:
             return power(part(0), part(1));

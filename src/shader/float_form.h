@@ -30,12 +30,15 @@ class FloatForm {
     [[nodiscard]] Interval range(const Expr& e);
 
   private:
+    /// Of expressions without names.
+    [[nodiscard]] Expr rewritten(const Expr& e);
     [[nodiscard]] Expr rewrite(const Expr& e);
     [[nodiscard]] Expr power(const Expr& base, const Expr& exponent);
     [[nodiscard]] Expr quotient(const Expr& a, const Expr& b);
 
     std::vector<Interval> inputs_;
     UniformRanges uniforms_;
+    PartNames names_;
     std::unordered_map<const ExprNode*, Expr> rewritten_;
     std::unordered_map<const ExprNode*, Interval> range_;
     std::vector<Expr> keep_;  // the nodes of the maps' keys

@@ -138,7 +138,8 @@ class ProgramMaker {
                 const Interval range = FloatForm(inputs, uniforms_).range(call.argument);
                 input = {std::min(input.lo, range.lo), std::max(input.hi, range.hi)};
             }
-            const std::string* const part = PartNames::of(shared.functions[k]);
+            const PartNames names(Span<const Expr>(&shared.functions[k], 1));
+            const std::string* const part = names.of(shared.functions[k]);
             const std::size_t scalar =
                 add_scalar(own + "_" + (part ? *part : "curve"), shared.functions[k], input);
             for (std::size_t i = 0; i < calls.size(); ++i) {

@@ -154,6 +154,19 @@ std::map<double, std::string> names_of_settings(const ShaderRequest& request) {
     return names;
 }
 
+PartNames names_in(const ShaderProgram& program) {
+    PartNames names;
+    for (const ScalarFunction& scalar : program.scalars)
+        names.take(scalar.f);
+    for (const ColorFunction& color : program.colors) {
+        for (const ColorFunction::Call& call : color.calls)
+            names.take(call.argument);
+        for (const Expr& e : color.f)
+            names.take(e);
+    }
+    return names;
+}
+
 /// Adds names of the source for numbers. A named expression that is constant only for some colors,
 /// such as the curve at black, gives no name.
 void add_names_of_numbers(const PartNames& names, std::map<double, std::string>& numbers) {
@@ -507,10 +520,9 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
 
 Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     check(request);
-    const PartNames names;
     const Pipeline pipeline = pipeline_of(request);
     ShaderProgram program = program_of(request);
-    add_names_of_numbers(names, program.names);
+    add_names_of_numbers(names_in(program), program.names);
     const LanguageFacts& language =
         facts_of(request.application ? request.application->language : request.language);
     Shader shader;

@@ -20,7 +20,9 @@ constexpr std::size_t kFewestUses = 3;
 
 class Sharer {
   public:
-    explicit Sharer(const std::array<Expr, 3>& f) : nodes_(nodes_of(f)) {
+    explicit Sharer(const std::array<Expr, 3>& f) : names_(f), nodes_(nodes_of(f)) {
+        for (Expr& e : nodes_)
+            e = PartNames().on(e);
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             number_.emplace(nodes_[i].node(), i);
             dominator_.push_back(dominator_of(i));
@@ -72,16 +74,17 @@ class Sharer {
                     inside.insert(value);
             }
             std::map<std::size_t, Expr> known = {{root_of(values[0]), Expr::input()}};
-            result.functions.push_back(rebuilt(values[0], known));
+            result.functions.push_back(named_rebuilt(values[0], known));
         }
         std::map<std::size_t, Expr> known;
         for (const auto& [value, function] : function_of) {
-            const std::string* const name = PartNames::of(nodes_[value]);
-            result.calls.push_back({function, rebuilt(root_of(value), known), name ? *name : ""});
+            const std::string* const name = names_.of(nodes_[value]);
+            result.calls.push_back(
+                {function, named_rebuilt(root_of(value), known), name ? *name : ""});
             known.insert_or_assign(value, Expr::input(2 + static_cast<int>(result.calls.size())));
         }
         for (std::size_t c = 0; c < 3; ++c)
-            result.f[c] = rebuilt(number_.at(f[c].node()), known);
+            result.f[c] = named_rebuilt(number_.at(f[c].node()), known);
         return result;
     }
 
@@ -145,7 +148,11 @@ class Sharer {
         return text + ")";
     }
 
-    [[nodiscard]] Expr rebuilt(std::size_t i, std::map<std::size_t, Expr>& known) const {
+    [[nodiscard]] Expr named_rebuilt(std::size_t i, std::map<std::size_t, Expr>& known) {
+        const Expr result = rebuilt(i, known);
+        return names_.on(result);
+    }
+    [[nodiscard]] Expr rebuilt(std::size_t i, std::map<std::size_t, Expr>& known) {
         if (const auto found = known.find(i); found != known.end()) return found->second;
         const Expr& e = nodes_[i];
         if (e.operand_count() == 0) return e;
@@ -157,12 +164,13 @@ class Sharer {
             e.op() == ExprOp::grid
                 ? interpolate(e.grid(), e.channel(), operands[0], operands[1], operands[2])
                 : make_expr(e.op(), operands, e.op() == ExprOp::lookup ? e.table() : nullptr);
-        PartNames::move(e, result);
+        names_.move(e, result);
         known.insert_or_assign(i, result);
         return result;
     }
 
-    std::vector<Expr> nodes_;
+    PartNames names_;
+    std::vector<Expr> nodes_;  // without names
     std::unordered_map<const ExprNode*, std::size_t> number_;
     std::vector<std::size_t> dominator_;
     std::vector<std::vector<std::size_t>> users_;

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "tonewright/span.h"
@@ -103,6 +104,7 @@ class TONEWRIGHT_API Grid {
 };
 
 struct ExprNode;
+struct PartNameList;
 
 /// An immutable scalar expression over numbered inputs.
 ///
@@ -142,15 +144,21 @@ class TONEWRIGHT_API Expr {
     [[nodiscard]] int channel() const noexcept;
     [[nodiscard]] int operand_count() const noexcept;
     [[nodiscard]] Expr operand(int i) const;
-    /// The shared node: the same for two expressions exactly if they were built in the same way.
+    /// The shared node: the same for two expressions exactly if they were built in the same way,
+    /// whatever names their parts have.
     [[nodiscard]] const ExprNode* node() const noexcept { return node_.get(); }
 
   private:
     friend Expr make_expr(ExprOp op, Span<const Expr> operands, std::shared_ptr<const Table> table);
     friend Expr interpolate(std::shared_ptr<const Grid> grid, int channel, const Expr& r,
                             const Expr& g, const Expr& b);
-    explicit Expr(std::shared_ptr<const ExprNode> node) : node_(std::move(node)) {}
+    friend class PartNames;
+    friend Expr named(const char* name, const Expr& part);
+    explicit Expr(std::shared_ptr<const ExprNode> node,
+                  std::shared_ptr<const PartNameList> names = nullptr)
+        : node_(std::move(node)), names_(std::move(names)) {}
     std::shared_ptr<const ExprNode> node_;
+    std::shared_ptr<const PartNameList> names_;  // of its parts; null: none
 };
 
 /// Builds a node from its operation and operands, with the same folding as the functions below.
@@ -193,8 +201,12 @@ TONEWRIGHT_API Expr clamp(const Expr& a, const Expr& lo, const Expr& hi);  // mi
 TONEWRIGHT_API Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a + t*(b - a)
 TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
 
-/// Collects the names that its thread gives with named(), as long as the object exists. A rewritten
-/// part keeps its name. A nested object starts without names and hides the outer one.
+/// Gives a part of a formula the name that it has in its source, and returns the part. Every
+/// expression that is built of it carries the name. Shaders and .tone files show it; results do not
+/// depend on it. Inputs and uniforms get none.
+[[nodiscard]] TONEWRIGHT_API Expr named(const char* name, const Expr& part);
+
+/// Names of parts, as expressions carry them. A part keeps the last name, a number the first.
 class TONEWRIGHT_API PartNames {
   public:
     struct Entry {
@@ -202,34 +214,31 @@ class TONEWRIGHT_API PartNames {
         std::string name;
     };
 
-    PartNames();
-    ~PartNames();
-    PartNames(const PartNames&) = delete;
-    PartNames& operator=(const PartNames&) = delete;
+    PartNames() = default;
+    explicit PartNames(Span<const Expr> exprs);
 
-    /// In the order in which they were named.
-    [[nodiscard]] const std::vector<Entry>& all() const { return all_; }
+    /// Adds the names that the expression carries.
+    void take(const Expr& expr);
+    void add(std::string_view name, const Expr& part);
+    /// Gives `after`, which replaces `before`, its name, unless it has one.
+    void move(const Expr& before, const Expr& after);
 
-    /// Adds a name to the innermost object, if there is one. A part keeps the last name, a number
-    /// the first. Inputs and uniforms get none.
-    static void add(std::string_view name, const Expr& part);
+    /// In the order in which they were given.
+    [[nodiscard]] const std::vector<Entry>& all() const noexcept { return all_; }
     /// The name of the part; null: none.
-    [[nodiscard]] static const std::string* of(const Expr& part);
-    /// Gives `after` the name of `before`. Each function that rewrites expressions calls it.
-    static void move(const Expr& before, const Expr& after);
+    [[nodiscard]] const std::string* of(const Expr& part) const;
+    /// The expression, which carries these names and no others.
+    [[nodiscard]] Expr on(const Expr& expr) const;
 
   private:
+    friend Expr named(const char* name, const Expr& part);
+    void take(const std::shared_ptr<const PartNameList>& names);
+
     std::vector<Entry> all_;  // keeps the parts alive, so that no address is used twice
     std::unordered_map<const ExprNode*, std::size_t> place_;
-    PartNames* outer_;
+    std::unordered_set<std::shared_ptr<const PartNameList>> taken_;
+    mutable std::shared_ptr<const PartNameList> list_;  // of all_, as on() made it
 };
-
-/// Gives a part of a formula the name that it has in its source, and returns the part. Shaders and
-/// .tone files show the name; results do not depend on it.
-inline Expr named(const char* name, const Expr& part) {
-    PartNames::add(name, part);
-    return part;
-}
 
 /// The expression with input i replaced by `inputs[i]`. Inputs beyond the span stay.
 [[nodiscard]] TONEWRIGHT_API Expr substitute(const Expr& expr, Span<const Expr> inputs);

@@ -68,8 +68,7 @@ TEST(Shader, TextDoesNotDependOnEarlierTexts) {
     const std::string first = text_of(request_of("uchimura"));
     for (const char* other : {"gt7", "unreal", "reinhard_jodie", "hable_piecewise"})
         (void)text_of(request_of(other));
-    const PartNames outer;
-    (void)named("other", Expr::input() / 0.22);  // a part of it, under another name
+    const Expr other = named("other", Expr::input() / 0.22);  // a part of it, under another name
     EXPECT_EQ(text_of(request_of("uchimura")), first);
 }
 

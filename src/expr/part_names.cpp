@@ -59,7 +59,7 @@ const std::string* PartNames::of(const Expr& part) const {
     return found == place_.end() ? nullptr : &all_[found->second].name;
 }
 
-Expr PartNames::on(const Expr& expr) const {
+Expr PartNames::on(const Expr& expr) {
     if (!list_ && !all_.empty())
         list_ = std::make_shared<const PartNameList>(PartNameList{nullptr, nullptr, all_});
     return Expr(expr.node_, list_);

@@ -228,7 +228,7 @@ class TONEWRIGHT_API PartNames {
     /// The name of the part; null: none.
     [[nodiscard]] const std::string* of(const Expr& part) const;
     /// The expression, which carries these names and no others.
-    [[nodiscard]] Expr on(const Expr& expr) const;
+    [[nodiscard]] Expr on(const Expr& expr);
 
   private:
     friend Expr named(const char* name, const Expr& part);
@@ -237,7 +237,7 @@ class TONEWRIGHT_API PartNames {
     std::vector<Entry> all_;  // keeps the parts alive, so that no address is used twice
     std::unordered_map<const ExprNode*, std::size_t> place_;
     std::unordered_set<std::shared_ptr<const PartNameList>> taken_;
-    mutable std::shared_ptr<const PartNameList> list_;  // of all_, as on() made it
+    std::shared_ptr<const PartNameList> list_;  // of all_, as on() made it; null: not made
 };
 
 /// The expression with input i replaced by `inputs[i]`. Inputs beyond the span stay.

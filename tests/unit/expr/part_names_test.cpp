@@ -34,11 +34,11 @@ TEST(PartNames, TravelWithTheExpression) {
 }
 
 TEST(PartNames, NumbersHaveNamesInputsHaveNone) {
-    const Expr white = named("white", 11.2);
+    const Expr white = named("white", Expr(11.2));
     EXPECT_EQ(names_of(named("x", Expr::input())), "");
     EXPECT_EQ(names_of(named("u", Expr::uniform("u"))), "");
     EXPECT_EQ(names_of(Expr::input() / (white * 2)), "white") << "of a folded number";
-    EXPECT_EQ(names_of(white + named("other", 11.2)), "white") << "a number keeps the first";
+    EXPECT_EQ(names_of(white + named("other", Expr(11.2))), "white") << "a number keeps the first";
     const Expr part = Expr::input() * 3;
     EXPECT_EQ(names_of(named("new", named("old", part))), "new") << "a part keeps the last";
 }
@@ -62,7 +62,7 @@ TEST(PartNames, AreAsManyAsThePartsHoweverOftenTheyAreUsed) {
     Expr sum = 0;
     const Expr scale = named("scale", exp2(x));
     for (int i = 1; i < 2000; ++i)
-        sum = sum + scale * named("n", double(i));
+        sum = sum + scale * named("n", Expr(i));
     EXPECT_EQ(PartNames(std::array{sum}).all().size(), 2000U);
     for (int i = 0; i < 100; ++i)
         sum = substitute(sum, std::array{x + 1});

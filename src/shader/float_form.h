@@ -30,7 +30,7 @@ class FloatForm {
     [[nodiscard]] Interval range(const Expr& e);
 
   private:
-    /// Of expressions without names.
+    /// The expression has no names; neither has the result.
     [[nodiscard]] Expr rewritten(const Expr& e);
     [[nodiscard]] Expr rewrite(const Expr& e);
     [[nodiscard]] Expr power(const Expr& base, const Expr& exponent);

@@ -64,7 +64,7 @@ class XmlReader {
     [[nodiscard]] std::string excerpt(std::size_t at) const {
         return printable(first_line(all_.substr(at, 100)));
     }
-    /// Where the last event begins. Expat gives -1 while it waits for the rest of a tag (2.6, and
+    /// The begin of the last event. Expat gives -1 while it waits for the rest of a tag (2.6, and
     /// 2.5 with Debian's security updates).
     [[nodiscard]] std::size_t position() {
         const XML_Index at = XML_GetCurrentByteIndex(parser_.get());

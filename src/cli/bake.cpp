@@ -174,77 +174,50 @@ int run_bake(const Options& options) {
 
 void add_bake(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command = program.add("bake", "Write an operator as a LUT file.");
-    command.group("LUTs, shaders and configs");
-    const char* const output = "Output";
-    const char* const table = "Table";
-    command.add("operator", options->op, "operator, operator:preset, .tone file, LUT or formula")
-        .suggest(suggest_operators);
-    command.add("-o", options->file, "file to write").value("FILE").group(output);
-    command
-        .add("--for", options->host,
-             "application that reads the LUT (see `tonewright list --hosts`); sets format, size, "
-             "input and display")
-        .value("NAME")
-        .suggest(suggest_lut_applications)
-        .group(output);
-    command.add("--format", options->format, "LUT format; see below (default: by the extension)")
-        .value("NAME")
-        .suggest(suggest_lut_formats)
-        .group(output);
-    command
-        .add("--all", options->all, "write the shipped LUTs; with --for, those of one application")
-        .value("FOLDER")
-        .group(output);
-    command
-        .add_flag("--exact", options->exact,
-                  "write nothing; list the most exact files for each application, or that of --for")
-        .group(output);
+    const Command command =
+        program.add("bake", "LUTs, shaders and configs", "Write an operator as a LUT file.");
+    command.argument("operator", &options->op,
+                     "operator, operator:preset, .tone file, LUT or formula",
+                     {.suggest = suggest_operators});
+    command.title("Output");
+    command.add("-o", "FILE", &options->file, "file to write");
+    command.add(
+        "--for", "NAME", &options->host,
+        "application that reads the LUT (see `tonewright list --hosts`); sets format, size, "
+        "input and display",
+        {.suggest = suggest_lut_applications});
+    command.add("--format", "NAME", &options->format,
+                "LUT format; see below (default: by the extension)",
+                {.suggest = suggest_lut_formats});
+    command.add("--all", "FOLDER", &options->all,
+                "write the shipped LUTs; with --for, those of one application");
+    command.add_flag(
+        "--exact", &options->exact,
+        "write nothing; list the most exact files for each application, or that of --for");
     add_view_options(command, *options);
-    command.add("--input-encoding", options->encoding, "encoding of the LUT's input; see below")
-        .value("NAME")
-        .suggest(suggest_encodings)
-        .show_default()
-        .group("Color");
-    command
-        .add("--size", options->size,
-             "grid points a side (default 33) or entries of a 1D table (default 4096); see below")
-        .value("N")
-        .group(table);
-    command
-        .add("--max-error", options->max_error,
-             "choose the smallest size up to 129 whose error on photographs (99.9 %), in code "
-             "values, is at most this")
-        .value("VALUE")
-        .group(table);
-    const Option one =
-        command.add_flag("--1d", options->one, "write a 1D table; the view must be per channel");
-    one.group(table);
-    command.add_flag("--3d", options->three, "write a 3D LUT even where a 1D table would do")
-        .group(table)
-        .excludes(one);
-    command
-        .add("--nodes", options->nodes,
-             "values at grid points: `auto` (best on photographs), `sampled`, `fitted` or `smooth`")
-        .value("NAME")
-        .choices({"auto", "sampled", "fitted", "smooth"})
-        .show_default()
-        .group(table);
-    command
-        .add("--decimals", options->decimals,
-             "decimals in a .cube file, 3..9 (default: all digits of a float)")
-        .value("N")
-        .group(table);
-    command
-        .add("--depth", options->bits,
-             "bits of a value: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl")
-        .value("BITS")
-        .group(table);
-    command.add("--icc-version", options->icc_version, "version of a device link: 2 or 4")
-        .value("N")
-        .choices({2, 4})
-        .show_default("2")
-        .group(table);
+    command.title("Color");
+    command.add("--input-encoding", "NAME", &options->encoding,
+                "encoding of the LUT's input; see below", {.suggest = suggest_encodings});
+    command.title("Table");
+    command.add(
+        "--size", "N", &options->size,
+        "grid points a side (default 33) or entries of a 1D table (default 4096); see below");
+    command.add("--max-error", "VALUE", &options->max_error,
+                "choose the smallest size up to 129 whose error on photographs (99.9 %), in code "
+                "values, is at most this");
+    command.add_flag("--1d", &options->one, "write a 1D table; the view must be per channel");
+    command.add_flag("--3d", &options->three, "write a 3D LUT even where a 1D table would do",
+                     {.excludes = {"--1d"}});
+    command.add(
+        "--nodes", "NAME", &options->nodes,
+        "values at grid points: `auto` (best on photographs), `sampled`, `fitted` or `smooth`",
+        {.choices = {"auto", "sampled", "fitted", "smooth"}});
+    command.add("--decimals", "N", &options->decimals,
+                "decimals in a .cube file, 3..9 (default: all digits of a float)");
+    command.add("--depth", "BITS", &options->bits,
+                "bits of a value: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
+    command.add("--icc-version", "N", &options->icc_version, "version of a device link: 2 or 4",
+                {.choices = {"2", "4"}, .default_text = "2"});
     command.common({"-o", "--for", "--format", "--all", "--set", "--look", "--exposure", "--input",
                     "--display", "--input-encoding", "--size", "--max-error"});
     command.footer(
@@ -264,10 +237,7 @@ void add_bake(CommandLine& program) {
         "  tonewright bake agx_blender --exact --for resolve\n"
         "  tonewright bake agx_blender --for resolve -o agx.cube\n"
         "  tonewright bake agx_sobotka --size 33 --input-encoding acescct -o agx.cube");
-    command.action([options, command] {
-        options->given = command.given();
-        return run_bake(*options);
-    });
+    command.action([options] { return run_bake(*options); }, &options->given);
 }
 
 TONEWRIGHT_NAMESPACE_END

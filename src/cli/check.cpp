@@ -84,24 +84,19 @@ int run_check(const Options& options) {
 void add_check(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command =
-        program.add("check", "Check an operator against the laws of tone curves.");
-    command.group("Checks");
-    command.add("operator", options->op, "operator, operator:preset, .tone file, LUT or formula")
-        .suggest(suggest_operators)
-        .required();
+        program.add("check", "Checks", "Check an operator against the laws of tone curves.");
+    command.argument("operator", &options->op,
+                     "operator, operator:preset, .tone file, LUT or formula",
+                     {.suggest = suggest_operators, .is_required = true});
     add_operator_options(command, *options);
+    command.title("LUT as the operator");
     add_lut_input_options(command, options->lut);
-    const char* const output = "Output";
-    command
-        .add("-o", options->file,
-             "write the tone curve, too: .svg, .pdf, or a picture such as .png")
-        .value("FILE")
-        .group(output);
-    command
-        .add_flag("--ascii", options->is_ascii,
-                  "draw with ASCII characters (default: where the locale is not UTF-8)")
-        .group(output);
-    command.add_flag("--json", options->json, "print JSON").group(output);
+    command.title("Output");
+    command.add("-o", "FILE", &options->file,
+                "write the tone curve, too: .svg, .pdf, or a picture such as .png");
+    command.add_flag("--ascii", &options->is_ascii,
+                     "draw with ASCII characters (default: where the locale is not UTF-8)");
+    command.add_flag("--json", &options->json, "print JSON");
     command.footer(
         "The laws: numbers are finite; brighter scenes are shown brighter; grays stay below the "
         "output peak, reach white, begin at black and stay gray; there are no jumps; the round "

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -120,6 +121,15 @@ class TypedCommand {
 };
 
 }  // namespace
+
+Suggest one_of(std::vector<std::string> words) {
+    return [words = std::move(words)](const TypedValue&) {
+        Suggestions all;
+        for (const std::string& word : words)
+            all.words.push_back({word, ""});
+        return all;
+    };
+}
 
 Suggestions complete(const std::vector<CommandTable>& tables,
                      const std::vector<std::string>& words) {

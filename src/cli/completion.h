@@ -35,6 +35,8 @@ struct TypedValue {
 };
 /// May give words that do not begin with the typed text; complete() drops them.
 using Suggest = std::function<Suggestions(const TypedValue&)>;
+/// Suggests these words.
+[[nodiscard]] Suggest one_of(std::vector<std::string> words);
 
 struct OptionTable {
     /// All names, the long ones first; `OPERATOR` for an argument.

@@ -101,91 +101,49 @@ int run_config(Options& options) {
 
 void add_config(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command = program.add("config", "Write an OpenColorIO config of the operators.");
-    command.group("LUTs, shaders and configs");
-    const char* const output = "Output";
-    const char* const contents = "Contents";
-    const char* const own = "Custom views";
-    const Option out =
-        command.add("-o", options->folder, "folder to write: config.ocio, luts/, probe.csv");
-    out.value("FOLDER").group(output);
-    const Option into =
-        command.add("--into", options->into,
-                    "existing config that gets the views; their LUTs go to tonewright/ beside it");
-    into.value("CONFIG").group(output);
-    out.excludes(into);
-    const Option update = command.add_flag(
-        "--update", options->is_updated,
-        "with --into: rebuild the added views, or replace them with those of --views");
-    update.group(output).needs(into);
-    command.add_flag("--remove", options->is_removed, "with --into: remove the added views")
-        .group(output)
-        .needs(into)
-        .excludes(update);
-    command
-        .add_flag("--backup", options->has_backup,
-                  "with --into: keep the config as it was as CONFIG.bak")
-        .group(output)
-        .needs(into);
-    command
-        .add("--archive", options->archive,
-             "write the config and its LUTs as one .ocioz file (OpenColorIO 2.2 or newer)")
-        .value("FILE")
-        .group(output)
-        .excludes(into);
+    const Command command = program.add("config", "LUTs, shaders and configs",
+                                        "Write an OpenColorIO config of the operators.");
+    command.title("Output");
+    command.add("-o", "FOLDER", &options->folder, "folder to write: config.ocio, luts/, probe.csv");
+    command.add("--into", "CONFIG", &options->into,
+                "existing config that gets the views; their LUTs go to tonewright/ beside it",
+                {.excludes = {"-o"}});
+    command.add_flag("--update", &options->is_updated,
+                     "with --into: rebuild the added views, or replace them with those of --views",
+                     {.needs = {"--into"}});
+    command.add_flag("--remove", &options->is_removed, "with --into: remove the added views",
+                     {.needs = {"--into"}, .excludes = {"--update"}});
+    command.add_flag("--backup", &options->has_backup,
+                     "with --into: keep the config as it was as CONFIG.bak", {.needs = {"--into"}});
+    command.add("--archive", "FILE", &options->archive,
+                "write the config and its LUTs as one .ocioz file (OpenColorIO 2.2 or newer)",
+                {.excludes = {"--into"}});
     ConfigOptions& config = options->config;
-    command
-        .add("--profile", config.profiles,
-             "OpenColorIO versions; the first is config.ocio, others config-VERSION.ocio")
-        .value("LIST")
-        .separated_by(',')
-        .show_default("2.1,2.0,2.5")
-        .group(output)
-        .excludes(into);
-    command
-        .add("--views", config.views,
-             "views (\"AgX Punchy\") or operators, in order; `none`, `all`, or "
-             "`standard`, a dozen (default)")
-        .value("LIST")
-        .suggest(suggest_views)
-        .separated_by(',')
-        .group(contents);
-    command.add("--displays", config.displays, "displays (default: all)")
-        .value("LIST")
-        .suggest(suggest_config_displays)
-        .separated_by(',')
-        .group(contents);
-    command
-        .add("--looks", config.looks,
-             "looks (\"AgX - Punchy\"), or `none` (default: all looks of the views)")
-        .value("LIST")
-        .suggest(suggest_view_looks)
-        .separated_by(',')
-        .group(contents);
-    command.add("--working", config.working, "color space in which applications compute")
-        .value("SPACE")
-        .suggest(suggest_spaces)
-        .show_default()
-        .group(contents);
-    command
-        .add("--operator", options->operators,
-             "add a view: NAME[:PRESET][:PARAMETER=VALUE...], a .tone file or a LUT; repeat for "
-             "more")
-        .value("OPERATOR")
-        .suggest(suggest_operators)
-        .one_value_each()
-        .group(own);
-    command.add("--name", options->names, "name of the added view, one for each --operator")
-        .value("NAME")
-        .one_value_each()
-        .group(own);
-    command
-        .add("--exposure-views", config.exposure_stops,
-             "add every view again with this exposure, in stops")
-        .value("LIST")
-        .separated_by(',')
-        .range(-16.0, 16.0)
-        .group(own);
+    command.add("--profile", "LIST", &config.profiles,
+                "OpenColorIO versions; the first is config.ocio, others config-VERSION.ocio",
+                {.excludes = {"--into"}, .separator = ',', .default_text = "2.1,2.0,2.5"});
+    command.title("Contents");
+    command.add("--views", "LIST", &config.views,
+                "views (\"AgX Punchy\") or operators, in order; `none`, `all`, or "
+                "`standard`, a dozen (default)",
+                {.suggest = suggest_views, .separator = ','});
+    command.add("--displays", "LIST", &config.displays, "displays (default: all)",
+                {.suggest = suggest_config_displays, .separator = ','});
+    command.add("--looks", "LIST", &config.looks,
+                "looks (\"AgX - Punchy\"), or `none` (default: all looks of the views)",
+                {.suggest = suggest_view_looks, .separator = ','});
+    command.add("--working", "SPACE", &config.working, "color space in which applications compute",
+                {.suggest = suggest_spaces});
+    command.title("Custom views");
+    command.add("--operator", "OPERATOR", &options->operators,
+                "add a view: NAME[:PRESET][:PARAMETER=VALUE...], a .tone file or a LUT; repeat for "
+                "more",
+                {.suggest = suggest_operators, .takes_one_each = true});
+    command.add("--name", "NAME", &options->names,
+                "name of the added view, one for each --operator", {.takes_one_each = true});
+    command.add("--exposure-views", "LIST", &config.exposure_stops,
+                "add every view again with this exposure, in stops",
+                {.range = {{-16.0, 16.0}}, .separator = ','});
     command.footer(
         "LIST is separated by commas. The first standard config takes 20 seconds, because 3D LUTs "
         "are fitted and kept in ~/.cache/tonewright. The next ones take 7 seconds.\n"

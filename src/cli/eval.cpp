@@ -207,38 +207,26 @@ int run_eval(const Options& options) {
 void add_eval(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command =
-        program.add("eval", "Tone map RGB triplets from standard input, one a line.");
-    command.group("Operators");
-    const Option op = command.add("operator", options->op,
-                                  "operator, operator:preset, .tone file, LUT or formula");
-    op.suggest(suggest_operators);
+        program.add("eval", "Operators", "Tone map RGB triplets from standard input, one a line.");
+    command.argument("operator", &options->op,
+                     "operator, operator:preset, .tone file, LUT or formula",
+                     {.suggest = suggest_operators});
     add_view_options(command, *options);
-    command.option("--input")
-        .describe("color space of the input (`tonewright list --inputs`)")
-        .suggest(suggest_input_colors);
-    command
-        .add("--engine", options->engine,
-             "`reference` (double precision), `simd`, `ocio` or `ocio-gpu` (floats)")
-        .value("NAME")
-        .suggest({"reference", "simd", "ocio", "ocio-gpu"})
-        .show_default()
-        .group("Computation");
-    command.add("--digits", options->digits, "significant digits of the output")
-        .value("N")
-        .show_default()
-        .range(1, 17)
-        .group("Computation");
-    command
-        .add_flag("--inverse", options->inverse,
-                  "map display colors to scene-linear, where the operator can be inverted")
-        .group("Computation");
-    command
-        .add_flag("--explain", options->explain,
-                  "print how the simd engine computes the operator, step by step, and stop")
-        .group("Computation");
-    add_lut_options(command, options->lut, op,
-                    {"--set", "--look", "--display", "--reference-white", "--engine", "--inverse",
-                     "--explain"});
+    command.describe("--input", "color space of the input (`tonewright list --inputs`)",
+                     suggest_input_colors);
+    command.title("Computation");
+    command.add("--engine", "NAME", &options->engine,
+                "`reference` (double precision), `simd`, `ocio` or `ocio-gpu` (floats)",
+                {.suggest = one_of({"reference", "simd", "ocio", "ocio-gpu"})});
+    command.add("--digits", "N", &options->digits, "significant digits of the output",
+                {.range = {{1, 17}}});
+    command.add_flag("--inverse", &options->inverse,
+                     "map display colors to scene-linear, where the operator can be inverted");
+    command.add_flag("--explain", &options->explain,
+                     "print how the simd engine computes the operator, step by step, and stop");
+    add_lut_options(command, options->lut,
+                    {"operator", "--set", "--look", "--display", "--reference-white", "--engine",
+                     "--inverse", "--explain"});
     command.footer(
         "A line is `r g b` or `r,g,b`. Values may be nan and inf; # begins a comment. Each line is "
         "answered when it arrives, so a program can keep eval running. Parameters that `apply` "
@@ -246,10 +234,7 @@ void add_eval(CommandLine& program) {
         "Examples:\n"
         "  printf '0.18 0.18 0.18\\n4,2,0.5\\n' | tonewright eval agx_sobotka\n"
         "  echo 0.18 0.18 0.18 | tonewright eval --lut agx.cube --input-encoding acescct");
-    command.action([options, command] {
-        options->given = command.given();
-        return run_eval(*options);
-    });
+    command.action([options] { return run_eval(*options); }, &options->given);
 }
 
 TONEWRIGHT_NAMESPACE_END

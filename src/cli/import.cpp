@@ -99,38 +99,25 @@ int run_import(const Options& options) {
 
 void add_import(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command =
-        program.add("import", "Turn a GLSL or HLSL function into an operator, a .tone file.");
-    command.group("Operators");
-    command.add("shader", options->file, "file with `float f(float)` or `vec3 f(vec3)`").required();
-    const char* const function = "Function";
-    command
-        .add("--function", options->function,
-             "function to import (default: the last one that no other function calls)")
-        .value("NAME")
-        .group(function);
-    command
-        .add("--parameter", options->parameters,
-             "default of a further argument or a uniform; NUMBER,MIN,MAX sets its range, too")
-        .value("NAME=NUMBER")
-        .one_value_each()
-        .group(function);
-    const char* const color = "Color";
-    command
-        .add("--encoded", options->encoded,
-             "encoding of the result: linear (default), srgb, gamma22 or gamma24")
-        .value("NAME")
-        .suggest({"linear", "srgb", "gamma22", "gamma24"})
-        .group(color);
-    command
-        .add("--primaries", options->primaries,
-             "primaries that the function works in, as .tone files name them")
-        .value("NAME")
-        .show_default()
-        .group(color);
-    command.add("-o", options->output, "file to write, NAME.tone (default: standard output)")
-        .value("FILE")
-        .group("Output");
+    const Command command = program.add(
+        "import", "Operators", "Turn a GLSL or HLSL function into an operator, a .tone file.");
+    command.argument("shader", &options->file, "file with `float f(float)` or `vec3 f(vec3)`",
+                     {.is_required = true});
+    command.title("Function");
+    command.add("--function", "NAME", &options->function,
+                "function to import (default: the last one that no other function calls)");
+    command.add("--parameter", "NAME=NUMBER", &options->parameters,
+                "default of a further argument or a uniform; NUMBER,MIN,MAX sets its range, too",
+                {.takes_one_each = true});
+    command.title("Color");
+    command.add("--encoded", "NAME", &options->encoded,
+                "encoding of the result: linear (default), srgb, gamma22 or gamma24",
+                {.suggest = one_of({"linear", "srgb", "gamma22", "gamma24"})});
+    command.add("--primaries", "NAME", &options->primaries,
+                "primaries that the function works in, as .tone files name them");
+    command.title("Output");
+    command.add("-o", "FILE", &options->output,
+                "file to write, NAME.tone (default: standard output)");
     command.footer(
         "The imported function and those that it calls are straight-line code: no loops, textures, "
         "arrays or recursion. Negatives count as 0.\n"

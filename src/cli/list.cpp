@@ -325,53 +325,29 @@ int run_list(const Options& options) {
 
 void add_list(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command =
-        program.add("list", "List operators with their parameters, displays and color spaces.");
-    command.group("Operators");
-    const char* const contents = "What to list";
-    const char* const format = "Format";
-    command.add("operator", options->op, "operator to describe in full, a .tone file or a LUT")
-        .suggest(suggest_operators);
-    const Option json = command.add_flag("--json", options->json, "print JSON");
-    json.group(format);
-    const Option markdown =
-        command.add_flag("--markdown", options->markdown, "print Markdown").excludes(json);
-    markdown.group(format);
-    const Option views =
-        command
-            .add_flag("--views", options->views,
-                      "print each operator's id, a tab, and the name of its view in the config")
-            .excludes(json)
-            .excludes(markdown);
-    views.group(contents);
-    const Option definition =
-        command
-            .add_flag("--definition", options->definition,
-                      "print the operator as a .tone file, with its settings (agx_blender:hdr)")
-            .excludes(json)
-            .excludes(markdown)
-            .excludes(views);
-    definition.group(contents);
-    const Option inputs =
-        command
-            .add_flag("--inputs", options->inputs,
-                      "list the names of --input for pictures: spaces, camera logs, displays, "
-                      "encodings")
-            .excludes(markdown)
-            .excludes(views)
-            .excludes(definition);
-    inputs.group(contents);
-    const Option hosts =
-        command
-            .add_flag(
-                "--hosts", options->hosts,
-                "list applications that read LUTs, the LUT that each expects, and how to load "
-                "it")
-            .excludes(markdown)
-            .excludes(views)
-            .excludes(definition)
-            .excludes(inputs);
-    hosts.group(contents);
+    const Command command = program.add(
+        "list", "Operators", "List operators with their parameters, displays and color spaces.");
+    command.argument("operator", &options->op,
+                     "operator to describe in full, a .tone file or a LUT",
+                     {.suggest = suggest_operators});
+    command.title("Format");
+    command.add_flag("--json", &options->json, "print JSON");
+    command.add_flag("--markdown", &options->markdown, "print Markdown", {.excludes = {"--json"}});
+    command.title("What to list");
+    command.add_flag("--views", &options->views,
+                     "print each operator's id, a tab, and the name of its view in the config",
+                     {.excludes = {"--json", "--markdown"}});
+    command.add_flag("--definition", &options->definition,
+                     "print the operator as a .tone file, with its settings (agx_blender:hdr)",
+                     {.excludes = {"--json", "--markdown", "--views"}});
+    command.add_flag("--inputs", &options->inputs,
+                     "list the names of --input for pictures: spaces, camera logs, displays, "
+                     "encodings",
+                     {.excludes = {"--markdown", "--views", "--definition"}});
+    command.add_flag("--hosts", &options->hosts,
+                     "list applications that read LUTs, the LUT that each expects, and how to load "
+                     "it",
+                     {.excludes = {"--markdown", "--views", "--definition", "--inputs"}});
     command.footer(
         "Examples:\n  tonewright list\n  tonewright list hable --json\n"
         "  tonewright list hable --definition > my.tone");

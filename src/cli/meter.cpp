@@ -10,32 +10,26 @@ TONEWRIGHT_NAMESPACE_BEGIN
 void add_meter(CommandLine& program) {
     auto options = std::make_shared<MeterCommandOptions>();
     options->metering.method = "log-average";
-    const Command command =
-        program.add("meter", "Measure the luminance of pictures and suggest an exposure.");
-    command.group("Pictures");
-    command.add("in", options->in, "pictures, in any format that OpenImageIO reads").required();
-    command.add_flag("--json", options->json, "print all figures with all digits, as JSON")
-        .group("Output");
-    command.add("--method", options->metering.method, "method: log-average, histogram, mean or max")
-        .value("NAME")
-        .suggest({"log-average", "histogram", "mean", "max"})
-        .show_default()
-        .group("Exposure");
-    const Option frames =
-        command.add("--frames", options->frames,
-                    "frames such as 1001-1100; IN has %04d, #### or @@@@ for the number");
-    frames.value("RANGE").group("Pictures");
-    command
-        .add("--input", options->input,
-             "color space (`tonewright list --inputs`), or `auto`, as the file says")
-        .value("SPACE")
-        .suggest(suggest_source_colors)
-        .group("Pictures")
-        .show_default();
-    add_input_units(command, options->input_units, options->reference_white, "Pictures");
+    const Command command = program.add(
+        "meter", "Pictures", "Measure the luminance of pictures and suggest an exposure.");
+    command.argument("in", &options->in, "pictures, in any format that OpenImageIO reads",
+                     {.is_required = true});
+    command.title("Output");
+    command.add_flag("--json", &options->json, "print all figures with all digits, as JSON");
+    command.title("Exposure");
+    command.add("--method", "NAME", &options->metering.method,
+                "method: log-average, histogram, mean or max",
+                {.suggest = one_of({"log-average", "histogram", "mean", "max"})});
+    command.title("Pictures");
+    command.add("--frames", "RANGE", &options->frames,
+                "frames such as 1001-1100; IN has %04d, #### or @@@@ for the number");
+    command.add("--input", "SPACE", &options->input,
+                "color space (`tonewright list --inputs`), or `auto`, as the file says",
+                {.suggest = suggest_source_colors});
+    add_input_units(command, options->input_units, options->reference_white);
     add_picture_input(command, options->picture);
-    add_exposure_options(command, options->metering, nullptr);
-    add_shot_options(command, options->shot, frames, nullptr);
+    add_exposure_options(command, options->metering);
+    add_shot_options(command, options->shot);
     command.common({"--json", "--method", "--frames", "--input", "--key", "--compensation",
                     "--region", "--percentiles", "--adapt"});
     command.footer(
@@ -49,20 +43,18 @@ void add_meter(CommandLine& program) {
 void add_info(CommandLine& program) {
     auto options = std::make_shared<InfoOptions>();
     const Command command = program.add(
-        "info", "Print what a picture file says about its colors, and what commands make of it.");
-    command.group("Pictures");
-    command.add("in", options->pictures, "pictures, in any format that OpenImageIO reads")
-        .required();
-    command.add_flag("--json", options->json, "print one JSON object for each picture, one a line")
-        .group("Output");
-    command
-        .add("--input", options->input,
-             "color space of the input: a space, a display or `auto`, as the file says")
-        .value("SPACE")
-        .suggest(suggest_source_colors)
-        .group("Pictures")
-        .show_default();
-    add_picture_choice(command, options->choice, "Pictures");
+        "info", "Pictures",
+        "Print what a picture file says about its colors, and what commands make of it.");
+    command.argument("in", &options->pictures, "pictures, in any format that OpenImageIO reads",
+                     {.is_required = true});
+    command.title("Output");
+    command.add_flag("--json", &options->json,
+                     "print one JSON object for each picture, one a line");
+    command.title("Pictures");
+    command.add("--input", "SPACE", &options->input,
+                "color space of the input: a space, a display or `auto`, as the file says",
+                {.suggest = suggest_source_colors});
+    add_picture_choice(command, options->choice);
     command.footer(
         "Examples:\n"
         "  tonewright info photo.jpg\n"

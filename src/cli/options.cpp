@@ -25,23 +25,11 @@ namespace {
 
 constexpr const char* kGeneralOptions = "General options";
 
-/// The type of an option's number; void for a text.
 template <class Value>
-struct NumberOf {
-    using Type = void;
-};
-template <>
-struct NumberOf<int> {
-    using Type = int;
-};
-template <>
-struct NumberOf<double> {
-    using Type = double;
-};
+constexpr bool kIsText =
+    std::is_same_v<Value, std::string> || std::is_same_v<Value, std::vector<std::string>>;
 template <class Value>
-struct NumberOf<std::optional<Value>> : NumberOf<Value> {};
-template <class Value>
-struct NumberOf<std::vector<Value>> : NumberOf<Value> {};
+constexpr bool kIsWhole = std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>;
 
 std::vector<const CLI::App*> subcommands(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App*) { return true; });
@@ -96,15 +84,10 @@ std::string checked_number(const std::string& subject, const std::string& text,
         fmt::format("{} is {}; expected {}", subject, text.empty() ? "empty" : text, expected));
 }
 
-std::string value_name(const CLI::Option& option, const OptionHelps& helps) {
-    const auto found = helps.find(&option);
-    return found == helps.end() || found->second.value.empty() ? "VALUE" : found->second.value;
-}
-
 /// The text to type: `--size N`, `--exact`.
-std::string usage_of(const CLI::Option& option, const OptionHelps& helps) {
+std::string usage_of(const CLI::Option& option) {
     if (option.get_positional() || option.get_items_expected_max() == 0) return name_of(option);
-    return name_of(option) + " " + value_name(option, helps);
+    return name_of(option) + " " + option.get_type_name();
 }
 
 /// Beginning of messages about a given option: `apply: --size is 3`, `apply: --exact is given`.
@@ -115,9 +98,9 @@ std::string given_of(const CLI::App& command, const CLI::Option& option) {
     return text;
 }
 
-Error missing_value(const CLI::App& command, const CLI::Option& option, const OptionHelps& helps) {
-    return Error(fmt::format("{} has no value; expected {}", subject_of(command, option),
-                             usage_of(option, helps)));
+Error missing_value(const CLI::App& command, const CLI::Option& option) {
+    return Error(
+        fmt::format("{} has no value; expected {}", subject_of(command, option), usage_of(option)));
 }
 
 bool is_option(const CLI::App& command, const std::string& text) {
@@ -127,7 +110,7 @@ bool is_option(const CLI::App& command, const std::string& text) {
 /// CLI11's commands as help pages.
 class HelpFormatter : public CLI::FormatterBase {
   public:
-    explicit HelpFormatter(const OptionHelps& helps) : helps_(helps) {}
+    explicit HelpFormatter(const FactsByOption& facts) : facts_(facts) {}
 
     std::string make_help(const CLI::App* app, std::string name,
                           CLI::AppFormatMode mode) const override {
@@ -142,15 +125,15 @@ class HelpFormatter : public CLI::FormatterBase {
     }
 
     [[nodiscard]] HelpPage page_of(const CLI::App& app, const std::string& name) const;
+    [[nodiscard]] OptionFacts facts_of(const CLI::Option& option) const {
+        const auto found = facts_.find(&option);
+        return found == facts_.end() ? OptionFacts() : found->second;
+    }
 
   private:
-    [[nodiscard]] OptionHelp help_of(const CLI::Option& option) const {
-        const auto found = helps_.find(&option);
-        return found == helps_.end() ? OptionHelp() : found->second;
-    }
     [[nodiscard]] HelpEntry entry_of(const CLI::Option& option) const;
 
-    const OptionHelps& helps_;
+    const FactsByOption& facts_;
 };
 
 HelpGroup& group_named(std::vector<HelpGroup>& groups, const std::string& title) {
@@ -162,9 +145,9 @@ HelpGroup& group_named(std::vector<HelpGroup>& groups, const std::string& title)
 }
 
 HelpEntry HelpFormatter::entry_of(const CLI::Option& option) const {
-    const OptionHelp help = help_of(option);
+    const OptionFacts known = facts_of(option);
     HelpEntry entry;
-    entry.is_common = help.is_common;
+    entry.is_common = known.is_common;
     if (option.get_positional()) {
         entry.names = argument_usage(option);
     } else {
@@ -172,15 +155,15 @@ HelpEntry HelpFormatter::entry_of(const CLI::Option& option) const {
             entry.names += (entry.names.empty() ? "-" : ", -") + name;
         for (const std::string& name : option.get_lnames())
             entry.names += (entry.names.empty() ? "--" : ", --") + name;
-        if (option.get_items_expected_max() > 0) entry.names += " " + value_name(option, helps_);
+        if (option.get_items_expected_max() > 0) entry.names += " " + option.get_type_name();
     }
     entry.text = option.get_description();
     std::string facts = option.get_default_str();
     if (!facts.empty()) facts.insert(0, "default ");
     constexpr double kMostShown = 1 << 16;  // a limit that no user reaches does not help
-    if (help.limits && help.limits->second < kMostShown) {
-        facts += fmt::format("{}{}..{}", facts.empty() ? "" : "; ", help.limits->first,
-                             help.limits->second);
+    if (known.range && known.range->second < kMostShown) {
+        facts += fmt::format("{}{}..{}", facts.empty() ? "" : "; ", known.range->first,
+                             known.range->second);
     }
     if (facts.empty()) return entry;
     // After a default that is in the text.
@@ -206,7 +189,7 @@ HelpPage HelpFormatter::page_of(const CLI::App& app, const std::string& name) co
     bool has_common = false;
     std::size_t number = 0;
     for (const CLI::Option* option : options) {
-        has_common = has_common || help_of(*option).is_common;
+        has_common = has_common || facts_of(*option).is_common;
         if (!option->get_positional()) {
             ++number;
             continue;
@@ -233,179 +216,95 @@ HelpPage HelpFormatter::page_of(const CLI::App& app, const std::string& name) co
 
 }  // namespace
 
-const Option& Option::required() const {
-    option_->required();
-    return *this;
-}
-
-const Option& Option::value(const std::string& name) const {
-    (*helps_)[option_].value = name;
-    return *this;
-}
-
-const Option& Option::show_default() const {
-    option_->capture_default_str();
-    return *this;
-}
-
-const Option& Option::show_default(const std::string& text) const {
-    option_->default_str(text);
-    return *this;
-}
-
-const Option& Option::describe(const std::string& help) const {
-    option_->description(help);
-    return *this;
-}
-
-const Option& Option::group(const std::string& title) const {
-    option_->group(title);
-    return *this;
-}
-
-const Option& Option::range(double low, double high) const {
-    (*helps_)[option_].limits = {low, high};
-    return *this;
-}
-
-const Option& Option::choices(const std::vector<std::string>& texts) const {
-    const auto as_listed = [app = app_, option = option_, texts](std::string& text) {
-        text = texts[find_choice(name_of(*option), text, texts, app->get_name())];
-        return std::string();
-    };
-    option_->transform(CLI::Validator(as_listed, {}));
-    return suggest(texts);
-}
-
-const Option& Option::choices(const std::vector<int>& numbers) const {
-    std::vector<std::string> texts;
-    texts.reserve(numbers.size());
-    for (const int number : numbers)
-        texts.push_back(fmt::to_string(number));
-    return choices(texts);
-}
-
-const Option& Option::one_value_each() const {
-    option_->allow_extra_args(false);
-    return *this;
-}
-
-const Option& Option::separated_by(char separator) const {
-    option_->delimiter(separator);
-    return *this;
-}
-
-const Option& Option::suggest(Suggest suggest) const {
-    (*helps_)[option_].suggest = std::move(suggest);
-    return *this;
-}
-
-const Option& Option::suggest(const std::vector<std::string>& words) const {
-    return suggest([words](const TypedValue&) {
-        Suggestions all;
-        for (const std::string& word : words)
-            all.words.push_back({word, ""});
-        return all;
-    });
-}
-
-const Option& Option::needs(const Option& other) const {
-    option_->needs(other.option_);
-    return *this;
-}
-
-const Option& Option::excludes(const Option& other) const {
-    option_->excludes(other.option_);
-    return *this;
-}
+void Command::title(const std::string& text) const { app_->option_defaults()->group(text); }
 
 /// Values are checked here, with Tonewright's messages, before CLI11 converts them with its own.
-template <class Value>
-Option Command::add_option(const std::string& name, Value& value, const std::string& help) const {
-    using Number = typename NumberOf<Value>::Type;
-    CLI::Option* option = app_->add_option(name, value, help);
-    const auto check = [app = app_, option, helps = helps_](std::string& text) {
-        // CLI11 takes the next word as the value, even an option.
-        if (!option->get_positional() && is_option(*app, text))
-            throw missing_value(*app, *option, *helps);
-        if constexpr (!std::is_void_v<Number>)
-            text = checked_number<Number>(subject_of(*app, *option), text, (*helps)[option].limits);
-        return std::string();
+void Command::add(const std::string& names, const std::string& value, OptionVariable variable,
+                  const std::string& help, const OptionFacts& facts) const {
+    const auto add_to = [&]<class Value>(Value* target) {
+        CLI::Option* option = app_->add_option(names, *target, help);
+        const auto check = [app = app_, option, range = facts.range](std::string& text) {
+            // CLI11 takes the next word as the value, even an option.
+            if (!option->get_positional() && is_option(*app, text))
+                throw missing_value(*app, *option);
+            using Number = std::conditional_t<kIsWhole<Value>, int, double>;
+            if constexpr (!kIsText<Value>)
+                text = checked_number<Number>(subject_of(*app, *option), text, range);
+            return std::string();
+        };
+        option->transform(CLI::Validator(check, {}));
+        option->type_name(value);
+        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+            if (help.find("(default") == std::string::npos) option->capture_default_str();
+        }
+        set(option, facts);
     };
-    option->transform(CLI::Validator(check, {}));
-    return {app_, option, helps_};
+    std::visit(add_to, variable);
 }
 
-Option Command::add(const std::string& name, std::string& value, const std::string& help) const {
-    return add_option(name, value, help);
+void Command::argument(const std::string& name, OptionVariable variable, const std::string& help,
+                       const OptionFacts& facts) const {
+    add(name, "", variable, help, facts);
 }
 
-Option Command::add(const std::string& name, int& value, const std::string& help) const {
-    return add_option(name, value, help);
-}
-
-Option Command::add(const std::string& name, double& value, const std::string& help) const {
-    return add_option(name, value, help);
-}
-
-Option Command::add(const std::string& name, std::optional<int>& value,
-                    const std::string& help) const {
-    return add_option(name, value, help);
-}
-
-Option Command::add(const std::string& name, std::optional<double>& value,
-                    const std::string& help) const {
-    return add_option(name, value, help);
-}
-
-Option Command::add(const std::string& name, std::vector<std::string>& values,
-                    const std::string& help) const {
-    return add_option(name, values, help);
-}
-
-Option Command::add(const std::string& name, std::vector<double>& values,
-                    const std::string& help) const {
-    return add_option(name, values, help);
-}
-
-Option Command::add_flag(const std::string& name, bool& value, const std::string& help) const {
-    CLI::Option* option = app_->add_flag(name, value, help);
+void Command::add_flag(const std::string& names, bool* variable, const std::string& help,
+                       const OptionFacts& facts) const {
+    CLI::Option* option = app_->add_flag(names, *variable, help);
     const auto check = [app = app_, option](std::string& text) {
         if (text == "true") return std::string();
         throw Error(fmt::format("{} is {}; expected no value", subject_of(*app, *option), text));
     };
     option->transform(CLI::Validator(check, {}));
-    return {app_, option, helps_};
+    option->type_name("");
+    set(option, facts);
 }
 
-void Command::group(const std::string& title) const { app_->group(title); }
+void Command::set(CLI::Option* option, const OptionFacts& facts) const {
+    OptionFacts& known = (*facts_)[option] = facts;
+    if (!facts.choices.empty()) {
+        const auto as_listed = [app = app_, option, texts = facts.choices](std::string& text) {
+            text = texts[find_choice(name_of(*option), text, texts, app->get_name())];
+            return std::string();
+        };
+        option->transform(CLI::Validator(as_listed, {}));
+        known.suggest = one_of(facts.choices);
+    }
+    if (!facts.default_text.empty()) option->default_str(facts.default_text);
+    if (facts.is_required) option->required();
+    if (facts.takes_one_each) option->allow_extra_args(false);
+    if (facts.separator != 0) option->delimiter(facts.separator);
+    for (const std::string& other : facts.needs)
+        option->needs(app_->get_option(other));
+    for (const std::string& other : facts.excludes)
+        option->excludes(app_->get_option(other));
+}
+
+void Command::describe(const std::string& name, const std::string& help, Suggest suggest) const {
+    CLI::Option* option = app_->get_option(name);
+    option->description(help);
+    if (suggest) (*facts_)[option].suggest = std::move(suggest);
+}
+
+void Command::exclude(const std::string& name, const std::vector<std::string>& others) const {
+    for (const std::string& other : others)
+        app_->get_option(name)->excludes(app_->get_option(other));
+}
 
 void Command::common(const std::vector<std::string>& names) const {
     for (const std::string& name : names)
-        (*helps_)[app_->get_option(name)].is_common = true;
+        (*facts_)[app_->get_option(name)].is_common = true;
 }
 
 void Command::footer(const std::string& text) const { app_->footer(text); }
 
-Option Command::option(const std::string& name) const {
-    return {app_, app_->get_option(name), helps_};
-}
-
-std::set<std::string> Command::given() const {
-    std::set<std::string> names;
-    for (const CLI::Option* option : app_->get_options()) {
-        if (option->count() > 0) names.insert(option->get_name());
-    }
-    return names;
-}
-
-void Command::action(std::function<int()> run) const {
-    app_->callback([run = std::move(run), exit_code = exit_code_, app = app_] {
+void Command::action(std::function<int()> run, std::set<std::string>* given) const {
+    app_->callback([run = std::move(run), given, exit_code = exit_code_, app = app_] {
         MessageOptions& messages = message_options();
         messages.command = app->get_name();
         for (const CLI::Option* option : app->get_options()) {
             for (const std::string& name : option->get_lnames())
                 messages.options.insert("--" + name);
+            if (given && option->count() > 0) given->insert(option->get_name());
         }
         *exit_code = run();
     });
@@ -414,34 +313,34 @@ void Command::action(std::function<int()> run) const {
 CommandLine::CommandLine(const std::string& name, const std::string& description,
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(description, name)) {
-    app_->formatter(std::make_shared<HelpFormatter>(helps_));
-    app_->set_help_flag("-h,--help", "print the common options")->group(kGeneralOptions);
-    app_->set_help_all_flag("--help-all", "print all options")->group(kGeneralOptions);
-    app_->set_version_flag("--version", version, "print the version")->group(kGeneralOptions);
+    app_->formatter(std::make_shared<HelpFormatter>(facts_));
+    app_->option_defaults()->group(kGeneralOptions);
+    app_->set_help_flag("-h,--help", "print the common options");
+    app_->set_help_all_flag("--help-all", "print all options");
+    app_->set_version_flag("--version", version, "print the version");
     app_->require_subcommand(1);
 }
 
 CommandLine::~CommandLine() = default;
 
-Command CommandLine::add(const std::string& name, const std::string& description) {
-    CLI::App* app = app_->add_subcommand(name, description);
-    for (const char* help : {"--help", "--help-all"})
+Command CommandLine::add(const std::string& name, const std::string& group,
+                         const std::string& description) {
+    CLI::App* app = app_->add_subcommand(name, description)->group(group);
+    for (const char* help : {"--help", "--help-all"})  // made before the defaults are inherited
         app->get_option(help)->group(kGeneralOptions);
-    Command command(app, &exit_code_, &helps_);
+    Command command(app, &exit_code_, &facts_);
     MessageOptions& messages = message_options();
-    const auto flag = [&](const char* names, bool& value, const char* help) {
-        command.add_flag(names, value, help).group(kGeneralOptions);
-    };
-    flag("--strict", messages.is_strict, "treat warnings as errors (exit code 1)");
-    flag("-q,--quiet", messages.is_quiet, "print errors and warnings only");
-    flag("-v,--verbose", messages.is_verbose, "print more details");
+    command.add_flag("--strict", &messages.is_strict, "treat warnings as errors (exit code 1)");
+    command.add_flag("-q,--quiet", &messages.is_quiet, "print errors and warnings only");
+    command.add_flag("-v,--verbose", &messages.is_verbose, "print more details");
+    command.title("Options");  // not a general one from here on
     return command;
 }
 
 void CommandLine::footer(const std::string& text) { app_->footer(text); }
 
 std::vector<CommandTable> CommandLine::tables() const {
-    const HelpFormatter formatter(helps_);
+    const HelpFormatter formatter(facts_);
     std::vector<const CLI::App*> apps = subcommands(*app_);
     apps.insert(apps.begin(), app_.get());
     std::vector<CommandTable> tables;
@@ -462,10 +361,8 @@ std::vector<CommandTable> CommandLine::tables() const {
             row.has_value = option->get_items_expected_max() > 0;
             row.may_repeat = option->get_items_expected_max() > 1;
             row.separator = option->get_delimiter();
-            const auto help = helps_.find(option);
-            if (help == helps_.end()) continue;
-            row.value = help->second.value;
-            row.suggest = help->second.suggest;
+            if (row.has_value) row.value = option->get_type_name();
+            row.suggest = formatter.facts_of(*option).suggest;
         }
     }
     return tables;
@@ -555,7 +452,7 @@ std::optional<std::string> unknown_option(const CLI::App& command) {
 }
 
 /// An option or argument that is missing, or that excludes another.
-std::optional<std::string> unmet_requirement(const CLI::App& command, const OptionHelps& helps) {
+std::optional<std::string> unmet_requirement(const CLI::App& command) {
     const std::vector<const CLI::Option*> options = command.get_options();
     const auto contains = [](const std::set<CLI::Option*>& list, const CLI::Option* option) {
         return std::any_of(list.begin(), list.end(),
@@ -565,7 +462,7 @@ std::optional<std::string> unmet_requirement(const CLI::App& command, const Opti
         if (option->get_required() && option->count() == 0) {
             return fmt::format(
                 "{} is missing; expected {}", subject_of(command, *option),
-                option->get_positional() ? option->get_description() : usage_of(*option, helps));
+                option->get_positional() ? option->get_description() : usage_of(*option));
         }
         if (option->count() == 0) continue;
         std::vector<std::string> needed;  // in the order of the help
@@ -576,7 +473,7 @@ std::optional<std::string> unmet_requirement(const CLI::App& command, const Opti
                                    command.get_name(), name_of(*option), name_of(*other));
             }
             if (!is_given && contains(option->get_needs(), other))
-                needed.push_back(usage_of(*other, helps));
+                needed.push_back(usage_of(*other));
         }
         if (!needed.empty()) {
             return fmt::format("{}; expected {} with it", given_of(command, *option),
@@ -614,17 +511,17 @@ std::optional<std::string> unexpected_argument(const CLI::App& command) {
 /// The error of a command line that CLI11 refuses, in our words. It follows from the state of the
 /// options, because CLI11's exceptions contain finished sentences only.
 /// @param last_word  of the command line
-Error usage_error(const CLI::App& command, const OptionHelps& helps, const std::string& last_word,
+Error usage_error(const CLI::App& command, const std::string& last_word,
                   const CLI::ParseError& error) {
     // CLI11 runs out of words when a value is missing.
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
         const std::string name = last_word.substr(0, last_word.find('='));
         if (const auto text = repeated_option(command)) return Error(*text);
         if (const CLI::Option* option = command.get_option_no_throw(name))
-            return missing_value(command, *option, helps);
+            return missing_value(command, *option);
     }
     for (const std::optional<std::string>& text :
-         {unknown_option(command), unmet_requirement(command, helps), repeated_option(command),
+         {unknown_option(command), unmet_requirement(command), repeated_option(command),
           unexpected_argument(command)}) {
         if (text) return Error(*text);
     }
@@ -665,7 +562,7 @@ int CommandLine::run(int argc, char** argv) {
         return app_->exit(e);  // --help, --version
     } catch (const CLI::ParseError& e) {
         const std::vector<CLI::App*> commands = app_->get_subcommands();
-        throw usage_error(commands.empty() ? *app_ : *commands.front(), helps_, last, e);
+        throw usage_error(commands.empty() ? *app_ : *commands.front(), last, e);
     }
     return exit_code_;
 }

@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "cli/completion.h"
@@ -24,94 +25,77 @@ class Option;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Facts about an option for the help and the messages, besides its names and its text.
-struct OptionHelp {
-    std::string value;
+/// The variable of an option. It keeps its value if the option is not given, and it must live until
+/// the command line has run.
+using OptionVariable =
+    std::variant<std::string*, int*, double*, std::optional<int>*, std::optional<double>*,
+                 std::vector<std::string>*, std::vector<double>*>;
+
+/// Facts about an option, besides its names, its variable and its text in the help.
+struct OptionFacts {
     /// Lowest and highest value of a number.
-    std::optional<std::pair<double, double>> limits;
-    bool is_common = false;
-    /// Suggestions for the value. Null: none, or files if the value is one.
+    std::optional<std::pair<double, double>> range = {};
+    /// All values, which a shell suggests. Empty: not only these.
+    std::vector<std::string> choices = {};
+    /// Suggestions of a shell for the value. Null: none, or files if the value is one.
     Suggest suggest = {};
-};
-using OptionHelps = std::map<const CLI::Option*, OptionHelp>;
-
-/// One option, flag or positional argument of a command. A handle: the command line owns the
-/// option.
-class Option {
-  public:
-    Option(const CLI::App* app, CLI::Option* option, OptionHelps* helps)
-        : app_(app), option_(option), helps_(helps) {}
-
-    const Option& required() const;
-    /// The word for the value in the help, such as `FILE`.
-    const Option& value(const std::string& name) const;
-    /// The help shows the value that the variable has now.
-    const Option& show_default() const;
-    const Option& show_default(const std::string& text) const;
-    const Option& describe(const std::string& help) const;
-    /// The title of its group in the help.
-    const Option& group(const std::string& title) const;
-    /// The lowest and the highest number that the value can be.
-    const Option& range(double low, double high) const;
-    const Option& choices(const std::vector<std::string>& texts) const;
-    const Option& choices(const std::vector<int>& numbers) const;
+    /// Names of other options and arguments.
+    std::vector<std::string> needs = {};
+    std::vector<std::string> excludes = {};
+    bool is_required = false;
     /// For a list: each occurrence takes one value, so that positional arguments may follow.
-    const Option& one_value_each() const;
-    /// For a list: one occurrence may have several values with `separator` between them.
-    const Option& separated_by(char separator) const;
-    /// Suggestions of a shell for the value. choices() also declares them.
-    const Option& suggest(Suggest suggest) const;
-    const Option& suggest(const std::vector<std::string>& words) const;
-    const Option& needs(const Option& other) const;
-    const Option& excludes(const Option& other) const;
-
-  private:
-    const CLI::App* app_;
-    CLI::Option* option_;
-    OptionHelps* helps_;
+    bool takes_one_each = false;
+    /// For a list: one occurrence may have several values with this between them. 0: none.
+    char separator = 0;
+    /// In the help, where it is not the value of the variable.
+    std::string default_text = {};
+    /// @see Command::common
+    bool is_common = false;
 };
+using FactsByOption = std::map<const CLI::Option*, OptionFacts>;
 
-/// One subcommand. A handle, like Option.
+/// One subcommand. A handle: the command line owns its options.
 class Command {
   public:
-    Command(CLI::App* app, int* exit_code, OptionHelps* helps)
-        : app_(app), exit_code_(exit_code), helps_(helps) {}
+    Command(CLI::App* app, int* exit_code, FactsByOption* facts)
+        : app_(app), exit_code_(exit_code), facts_(facts) {}
 
-    // The variable keeps its value if the option is not given. It must live until the command line
-    // has run.
-    Option add(const std::string& name, std::string& value, const std::string& help) const;
-    Option add(const std::string& name, int& value, const std::string& help) const;
-    Option add(const std::string& name, double& value, const std::string& help) const;
-    Option add(const std::string& name, std::optional<int>& value, const std::string& help) const;
-    Option add(const std::string& name, std::optional<double>& value,
-               const std::string& help) const;
-    Option add(const std::string& name, std::vector<std::string>& values,
-               const std::string& help) const;
-    Option add(const std::string& name, std::vector<double>& values, const std::string& help) const;
-    Option add_flag(const std::string& name, bool& value, const std::string& help) const;
+    /// The title in the help of the options that are added next.
+    void title(const std::string& text) const;
+    /// Adds an option. The help shows the value that the variable has now, unless the help names
+    /// the default.
+    /// @param names  `-o,--output`
+    /// @param value  the word for the value in the help, such as `FILE`
+    void add(const std::string& names, const std::string& value, OptionVariable variable,
+             const std::string& help, const OptionFacts& facts = {}) const;
+    /// Adds an option without a value.
+    void add_flag(const std::string& names, bool* variable, const std::string& help,
+                  const OptionFacts& facts = {}) const;
+    /// Adds a positional argument.
+    void argument(const std::string& name, OptionVariable variable, const std::string& help,
+                  const OptionFacts& facts = {}) const;
 
-    /// The title under which the program's help lists the command.
-    void group(const std::string& title) const;
+    /// Another text for an option that is shared, and other suggestions unless they are null.
+    void describe(const std::string& name, const std::string& help, Suggest suggest = {}) const;
+    /// The option excludes others.
+    void exclude(const std::string& name, const std::vector<std::string>& others) const;
     /// The options that `--help` prints; `--help-all` prints the others, too. A command that does
     /// not call it has common options only.
     void common(const std::vector<std::string>& names) const;
     /// At the end of the help. Lines that begin with a space stay as they are; others are
     /// paragraphs, which are wrapped.
     void footer(const std::string& text) const;
-    /// @param run  returns the exit code
-    void action(std::function<int()> run) const;
-
-    [[nodiscard]] Option option(const std::string& name) const;
-    /// Names of the options that the command line has, such as `--input`.
-    [[nodiscard]] std::set<std::string> given() const;
+    /// @param run    returns the exit code
+    /// @param given  before that, gets the names of the options that the command line has, such as
+    ///               `--input`; null: nothing does
+    void action(std::function<int()> run, std::set<std::string>* given = nullptr) const;
 
   private:
-    template <class Value>
-    Option add_option(const std::string& name, Value& value, const std::string& help) const;
+    void set(CLI::Option* option, const OptionFacts& facts) const;
 
     CLI::App* app_;
     int* exit_code_;  // of the command line
-    OptionHelps* helps_;
+    FactsByOption* facts_;
 };
 
 /// A program with subcommands, of which one runs.
@@ -123,7 +107,8 @@ class CommandLine {
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
 
-    Command add(const std::string& name, const std::string& description);
+    /// @param group  the title under which the program's help lists the command
+    Command add(const std::string& name, const std::string& group, const std::string& description);
     void footer(const std::string& text);
 
     /// The program itself, under its own name, and its commands in the order of the help.
@@ -136,7 +121,7 @@ class CommandLine {
 
   private:
     std::unique_ptr<CLI::App> app_;
-    OptionHelps helps_;
+    FactsByOption facts_;
     int exit_code_ = 0;
 };
 

@@ -257,31 +257,21 @@ std::string write_plot(const PlotOptions& options) {
 
 void add_plot(CommandLine& program) {
     auto options = std::make_shared<PlotOptions>();
-    const Command command = program.add("plot", "Plot the tone curves of operators.");
-    command.group("Operators");
-    command.add("operators", options->operators, "NAME[:PRESET][:PARAMETER=VALUE...][:look=LOOK]")
-        .suggest(suggest_operators)
-        .required();
-    const char* const output = "Plot";
-    command.add("-o", options->file, "file to write: .svg, .pdf, or a picture such as .png")
-        .value("FILE")
-        .required()
-        .group(output);
-    command
-        .add("--y", options->y,
-             "vertical axis: `code` (code values), `light` (percent of white or cd/m2) or `log`")
-        .value("NAME")
-        .suggest({"code", "light", "log"})
-        .show_default()
-        .group(output);
-    command.add("--title", options->title, "title of the plot").value("TEXT").group(output);
-    command
-        .add("--width", options->width,
-             "width in pixels (default 640 for SVG and PDF, 1280 for pictures)")
-        .value("N")
-        .range(320, 16384)
-        .group(output);
-    command.add_flag("--dark", options->is_dark, "draw for a dark page").group(output);
+    const Command command = program.add("plot", "Operators", "Plot the tone curves of operators.");
+    command.argument("operators", &options->operators,
+                     "NAME[:PRESET][:PARAMETER=VALUE...][:look=LOOK]",
+                     {.suggest = suggest_operators, .is_required = true});
+    command.title("Plot");
+    command.add("-o", "FILE", &options->file,
+                "file to write: .svg, .pdf, or a picture such as .png", {.is_required = true});
+    command.add("--y", "NAME", &options->y,
+                "vertical axis: `code` (code values), `light` (percent of white or cd/m2) or `log`",
+                {.suggest = one_of({"code", "light", "log"})});
+    command.add("--title", "TEXT", &options->title, "title of the plot");
+    command.add("--width", "N", &options->width,
+                "width in pixels (default 640 for SVG and PDF, 1280 for pictures)",
+                {.range = {{320, 16384}}});
+    command.add_flag("--dark", &options->is_dark, "draw for a dark page");
     add_view_options(command, *options);
     command.footer(
         "The plot shows grays from -10 to +10 stops around 0.18. An operator that tints gray is "

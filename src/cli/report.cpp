@@ -78,31 +78,24 @@ int run_report(const Options& options) {
 void add_report(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command =
-        program.add("report", "Write an HTML page that shows operators on pictures.");
-    command.group("Pictures");
-    const char* const contents = "Contents";
-    command.add("pictures", options->pictures,
-                "pictures to embed, in any format that OpenImageIO reads (default: the chart)");
-    command.add("-o", options->file, "HTML file to write").value("FILE").required().group(contents);
-    command
-        .add("--operators", options->operators,
-             "operators, as for `compare`, or `all`, with presets and looks (default: all without "
-             "them)")
-        .suggest(suggest_operators)
-        .one_value_each()
-        .separated_by(',')
-        .value("LIST")
-        .group(contents);
-    command.add("--width", options->picture.width, "largest width of an embedded picture in pixels")
-        .value("N")
-        .show_default()
-        .range(320, 8192)
-        .group(contents);
-    add_input_units(command, options->picture.input_units, options->picture.reference_white,
-                    contents);
-    add_picture_choice(command, options->picture.choice, "Pictures");
-    command.add_flag("--no-parity", options->no_parity, "leave out the parity table")
-        .group(contents);
+        program.add("report", "Pictures", "Write an HTML page that shows operators on pictures.");
+    command.argument(
+        "pictures", &options->pictures,
+        "pictures to embed, in any format that OpenImageIO reads (default: the chart)");
+    command.title("Contents");
+    command.add("-o", "FILE", &options->file, "HTML file to write", {.is_required = true});
+    command.add(
+        "--operators", "LIST", &options->operators,
+        "operators, as for `compare`, or `all`, with presets and looks (default: all without "
+        "them)",
+        {.suggest = suggest_operators, .takes_one_each = true, .separator = ','});
+    command.add("--width", "N", &options->picture.width,
+                "largest width of an embedded picture in pixels", {.range = {{320, 8192}}});
+    add_input_units(command, options->picture.input_units, options->picture.reference_white);
+    command.title("Pictures");
+    add_picture_choice(command, options->picture.choice);
+    command.title("Contents");
+    command.add_flag("--no-parity", &options->no_parity, "leave out the parity table");
     command.footer(
         "The page is one file. It opens without a server and sends no data. It runs the exported "
         "GLSL ES on the embedded pictures, and on pictures that you drop on it.\n"

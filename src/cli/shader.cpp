@@ -168,57 +168,37 @@ int run_shader(Options& options) {
 void add_shader(CommandLine& program) {
     auto options = std::make_shared<Options>();
     options->display = kLinearOutput;
-    const Command command = program.add("shader", "Write an operator as shader source.");
-    command.group("LUTs, shaders and configs");
-    const char* const output = "Output";
-    command.add("operator", options->op, "operator, operator:preset, .tone file, LUT or formula")
-        .suggest(suggest_operators);
-    command
-        .add("--language", options->language,
-             "shader language; see --list (default: by the extension)")
-        .value("NAME")
-        .suggest(suggest_languages)
-        .group(output);
-    command
-        .add("--for", options->application,
-             "application that takes the whole file; see --list. Sets language and display")
-        .value("NAME")
-        .suggest(suggest_shader_applications)
-        .group(output);
-    command.add("-o", options->file, "file to write (default, or -: standard output)")
-        .value("FILE")
-        .group(output);
-    command
-        .add("--all", options->all,
-             "write all operators, presets and looks in one language or in all")
-        .value("FOLDER")
-        .group(output);
-    command
-        .add("--uniforms", options->uniforms,
-             "arguments after the color: exposure, and live parameters (see `tonewright list "
-             "OPERATOR`)")
-        .value("NAME,...")
-        .suggest(suggest_uniforms)
-        .separated_by(',')
-        .one_value_each()
-        .group(output);
-    command
-        .add("--tables", options->tables,
-             "store tables and 3D LUTs as `array` in the text or `texture` in a file (default: by "
-             "size)")
-        .choices(std::vector<std::string>{"texture", "array"})
-        .value("KIND")
-        .group(output);
-    command
-        .add("--curves", options->curves,
-             "curves of one number as `formula`, or `fitted` polynomials where these are faster")
-        .choices(std::vector<std::string>{"formula", "fitted"})
-        .value("KIND")
-        .show_default()
-        .group(output);
-    command.add_flag("--inverse", options->is_inverse, "write the inverse").group(output);
-    command.add_flag("--list", options->list, "list languages and applications").group(output);
+    const Command command =
+        program.add("shader", "LUTs, shaders and configs", "Write an operator as shader source.");
+    command.argument("operator", &options->op,
+                     "operator, operator:preset, .tone file, LUT or formula",
+                     {.suggest = suggest_operators});
+    command.title("Output");
+    command.add("--language", "NAME", &options->language,
+                "shader language; see --list (default: by the extension)",
+                {.suggest = suggest_languages});
+    command.add("--for", "NAME", &options->application,
+                "application that takes the whole file; see --list. Sets language and display",
+                {.suggest = suggest_shader_applications});
+    command.add("-o", "FILE", &options->file, "file to write (default, or -: standard output)");
+    command.add("--all", "FOLDER", &options->all,
+                "write all operators, presets and looks in one language or in all");
+    command.add("--uniforms", "NAME,...", &options->uniforms,
+                "arguments after the color: exposure, and live parameters (see `tonewright list "
+                "OPERATOR`)",
+                {.suggest = suggest_uniforms, .takes_one_each = true, .separator = ','});
+    command.add(
+        "--tables", "KIND", &options->tables,
+        "store tables and 3D LUTs as `array` in the text or `texture` in a file (default: by "
+        "size)",
+        {.choices = {"texture", "array"}});
+    command.add("--curves", "KIND", &options->curves,
+                "curves of one number as `formula`, or `fitted` polynomials where these are faster",
+                {.choices = {"formula", "fitted"}});
+    command.add_flag("--inverse", &options->is_inverse, "write the inverse");
+    command.add_flag("--list", &options->list, "list languages and applications");
     add_view_options(command, *options);
+    command.title("LUT as the operator");
     add_lut_input_options(command, options->lut);
     command.common({"--language", "--for", "-o", "--uniforms", "--list", "--set", "--look",
                     "--exposure", "--input", "--display"});
@@ -231,11 +211,12 @@ void add_shader(CommandLine& program) {
         "  tonewright shader hable --language hlsl --uniforms white -o hable.hlsl\n"
         "  tonewright shader agx_threejs --for threejs -o agx.js\n"
         "  tonewright shader khronos_neutral --language c --display srgb -o neutral.h");
-    command.action([options, command] {
-        options->given = command.given();
-        take_lut_options("shader", options->lut, *options, LutOption::no);
-        return run_shader(*options);
-    });
+    command.action(
+        [options] {
+            take_lut_options("shader", options->lut, *options, LutOption::no);
+            return run_shader(*options);
+        },
+        &options->given);
 }
 
 TONEWRIGHT_NAMESPACE_END

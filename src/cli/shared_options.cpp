@@ -5,216 +5,143 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 void add_operator_options(const Command& command, ViewOptions& options) {
-    const char* const op = "Operator";
-    command.add("--set", options.set, "operator parameter; repeat for more")
-        .value("NAME=VALUE")
-        .suggest(suggest_settings)
-        .one_value_each()
-        .group(op);
-    command.add("--look", options.look, "look of the operator")
-        .value("NAME")
-        .suggest(suggest_looks)
-        .group(op);
+    command.title("Operator");
+    command.add("--set", "NAME=VALUE", &options.set, "operator parameter; repeat for more",
+                {.suggest = suggest_settings, .takes_one_each = true});
+    command.add("--look", "NAME", &options.look, "look of the operator",
+                {.suggest = suggest_looks});
 }
 
-void add_view_options(const Command& command, ViewOptions& options) {
-    const char* const color = "Color";
+void add_view_options(const Command& command, ViewOptions& options, const char* exposure_title) {
     add_operator_options(command, options);
-    command.add("--exposure", options.exposure, "exposure before the operator, in stops")
-        .value("STOPS")
-        .show_default()
-        .group("Operator");
-    command.add("--input", options.input, "scene-linear color space of the input")
-        .value("SPACE")
-        .suggest(suggest_spaces)
-        .show_default()
-        .group(color);
-    command
-        .add("--display", options.display,
-             "display, `linear` (unclamped Rec.709) or `native` (output of the operator)")
-        .value("NAME")
-        .suggest(suggest_displays)
-        .show_default()
-        .group(color);
-    add_input_units(command, options.input_units, options.reference_white, color);
-    command.option("--reference-white")
-        .describe("luminance of scene-linear 1.0 in absolute inputs and on HDR displays");
+    command.title(exposure_title);
+    command.add("--exposure", "STOPS", &options.exposure, "exposure before the operator, in stops");
+    command.title("Color");
+    command.add("--input", "SPACE", &options.input, "scene-linear color space of the input",
+                {.suggest = suggest_spaces});
+    command.add("--display", "NAME", &options.display,
+                "display, `linear` (unclamped Rec.709) or `native` (output of the operator)",
+                {.suggest = suggest_displays});
+    add_input_units(command, options.input_units, options.reference_white);
+    command.describe("--reference-white",
+                     "luminance of scene-linear 1.0 in absolute inputs and on HDR displays");
 }
 
-void add_input_units(const Command& command, std::string& units, double& reference_white,
-                     const char* group) {
-    command
-        .add("--input-units", units, "units of linear input: `relative` (1.0 is white) or `cd/m2`")
-        .value("UNITS")
-        .suggest({"relative", "cd/m2"})
-        .show_default()
-        .group(group);
-    command
-        .add("--reference-white", reference_white,
-             "luminance that becomes 1.0, of PQ, HLG and cd/m2")
-        .value("CD/M2")
-        .show_default()
-        .group(group);
+void add_input_units(const Command& command, std::string& units, double& reference_white) {
+    command.add("--input-units", "UNITS", &units,
+                "units of linear input: `relative` (1.0 is white) or `cd/m2`",
+                {.suggest = one_of({"relative", "cd/m2"})});
+    command.add("--reference-white", "CD/M2", &reference_white,
+                "luminance that becomes 1.0, of PQ, HLG and cd/m2");
 }
 
-void add_lut_input_options(const Command& command, LutOptions& options, const char* group) {
-    command
-        .add("--input-encoding", options.encoding,
-             "encoding that the LUT expects (see `bake --help`), or `none` (default: that of the "
-             "LUT's header)")
-        .value("NAME")
-        .suggest(suggest_encodings)
-        .group(group);
-    command
-        .add("--lut-space", options.space,
-             "scene-linear space of the LUT's input (default: that of its encoding)")
-        .value("SPACE")
-        .suggest(suggest_spaces)
-        .group(group);
+void add_lut_input_options(const Command& command, LutOptions& options) {
+    command.add(
+        "--input-encoding", "NAME", &options.encoding,
+        "encoding that the LUT expects (see `bake --help`), or `none` (default: that of the "
+        "LUT's header)",
+        {.suggest = suggest_encodings});
+    command.add("--lut-space", "SPACE", &options.space,
+                "scene-linear space of the LUT's input (default: that of its encoding)",
+                {.suggest = suggest_spaces});
 }
 
-void add_lut_options(const Command& command, LutOptions& options, const Option& op,
+void add_lut_options(const Command& command, LutOptions& options,
                      const std::vector<std::string>& others) {
-    const char* const group = "LUT, or LUT as the operator";
-    const Option lut =
-        command.add("--lut", options.file, "LUT file (.cube, .clf, .csp, .icc, Hald CLUT, ...)");
-    lut.value("FILE").group(group).excludes(op);
-    for (const std::string& other : others)
-        lut.excludes(command.option(other));
-    add_lut_input_options(command, options, group);
-    command
-        .add("--interpolation", options.interpolation,
-             "between grid points: tetrahedral, trilinear, or auto, as the file says")
-        .value("NAME")
-        .suggest({"tetrahedral", "trilinear", "auto"})
-        .show_default()
-        .group(group)
-        .needs(lut);
+    command.title("LUT, or LUT as the operator");
+    command.add("--lut", "FILE", &options.file,
+                "LUT file (.cube, .clf, .csp, .icc, Hald CLUT, ...)", {.excludes = others});
+    add_lut_input_options(command, options);
+    command.add("--interpolation", "NAME", &options.interpolation,
+                "between grid points: tetrahedral, trilinear, or auto, as the file says",
+                {.suggest = one_of({"tetrahedral", "trilinear", "auto"}), .needs = {"--lut"}});
 }
 
-Option add_max_pixels(const Command& command, std::optional<double>& value) {
-    return command
-        .add("--max-pixels", value, "most pixels that a picture may declare (default 1e9)")
-        .value("N")
-        .range(1, 1e12);
+void add_resize(const Command& command, std::string& resize) {
+    command.add("--resize", "SIZE", &resize,
+                "resize first, in linear light (Lanczos): 1920x1080, 1920 (the width) or 50%",
+                {.suggest = one_of({"1920x1080", "1920", "50%"})});
 }
 
-void add_resize(const Command& command, std::string& resize, const char* group) {
-    command
-        .add("--resize", resize,
-             "resize first, in linear light (Lanczos): 1920x1080, 1920 (the width) or 50%")
-        .value("SIZE")
-        .suggest({"1920x1080", "1920", "50%"})
-        .group(group);
-}
-
-void add_picture_choice(const Command& command, PictureChoice& choice, const char* group) {
-    command
-        .add("--layer", choice.layer,
-             "layer of an EXR file (default: R, G, B, else the first that is a picture)")
-        .value("NAME")
-        .group(group);
-    command
-        .add("--subimage", choice.subimage,
-             "part or page: its name or its number from 0 (default: the first picture)")
-        .value("N")
-        .group(group);
-    add_max_pixels(command, choice.max_pixels).group(group);
+void add_picture_choice(const Command& command, PictureChoice& choice) {
+    command.add("--layer", "NAME", &choice.layer,
+                "layer of an EXR file (default: R, G, B, else the first that is a picture)");
+    command.add("--subimage", "N", &choice.subimage,
+                "part or page: its name or its number from 0 (default: the first picture)");
+    command.add("--max-pixels", "N", &choice.max_pixels,
+                "most pixels that a picture may declare (default 1e9)", {.range = {{1, 1e12}}});
 }
 
 void add_picture_input(const Command& command, PictureInput& options) {
-    const char* const group = "Pictures";
-    command.add("--threads", options.threads, "number of threads; 0 uses all cores")
-        .value("N")
-        .show_default()
-        .range(0, 1024)
-        .group(group);
-    command
-        .add("--timeout", options.timeout,
-             "seconds that a picture may take; each gets a process of its own (default: no limit)")
-        .value("SECONDS")
-        .range(0.1, 1e6)
-        .group(group);
-    add_picture_choice(command, options, group);
-    const Option yes =
-        command.add_flag("--unpremult", options.unpremult,
-                         "divide color by alpha first (default: if the alpha is associated)");
-    yes.group(group);
-    command.add_flag("--no-unpremult", options.no_unpremult, "do not un-premultiply color")
-        .group(group)
-        .excludes(yes);
+    command.title("Pictures");
+    command.add("--threads", "N", &options.threads, "number of threads; 0 uses all cores",
+                {.range = {{0, 1024}}});
+    command.add(
+        "--timeout", "SECONDS", &options.timeout,
+        "seconds that a picture may take; each gets a process of its own (default: no limit)",
+        {.range = {{0.1, 1e6}}});
+    add_picture_choice(command, options);
+    command.add_flag("--unpremult", &options.unpremult,
+                     "divide color by alpha first (default: if the alpha is associated)");
+    command.add_flag("--no-unpremult", &options.no_unpremult, "do not un-premultiply color",
+                     {.excludes = {"--unpremult"}});
 }
 
-void add_exposure_options(const Command& command, ExposureOptions& options, const Option* method) {
-    const char* group = "Exposure";
-    const auto add = [&](const char* name, auto& value, const char* value_name, const char* help) {
-        const Option option = command.add(name, value, help);
-        if (method) option.needs(*method);
-        option.value(value_name).group(group);
-        return option;
+void add_exposure_options(const Command& command, ExposureOptions& options,
+                          const std::vector<std::string>& needs) {
+    const auto add = [&](const char* name, const char* value, OptionVariable variable,
+                         const char* help) {
+        command.add(name, value, variable, help, {.needs = needs});
     };
-    add("--key", options.key, "VALUE",
+    command.title("Exposure");
+    add("--key", "VALUE", &options.key,
         "target for the metered luminance, or `auto` (default 0.18; 1 with `max`)");
-    add("--compensation", options.compensation, "STOPS", "stops on top of the metered exposure")
-        .show_default();
-    add("--exposure-limits", options.limits, "LOW,HIGH",
-        "limits of the metered exposure, in stops, before compensation")
-        .show_default();
-    add("--calibration", options.calibration, "VALUE",
-        "`key`, or 9.6: a camera that saturates at 9.6 times the metered luminance")
-        .show_default();
-    add(method ? "--meter-region" : "--region,--meter-region", options.region, "X,Y,W,H",
+    add("--compensation", "STOPS", &options.compensation, "stops on top of the metered exposure");
+    add("--exposure-limits", "LOW,HIGH", &options.limits,
+        "limits of the metered exposure, in stops, before compensation");
+    add("--calibration", "VALUE", &options.calibration,
+        "`key`, or 9.6: a camera that saturates at 9.6 times the metered luminance");
+    add(needs.empty() ? "--region,--meter-region" : "--meter-region", "X,Y,W,H", &options.region,
         "metered pixels: x, y, width, height (default: all)");
-    group = "Metering";
-    add("--delta", options.delta, "VALUE",
-        "added to each luminance inside the logarithm; also the least metered luminance")
-        .show_default();
-    add("--percentiles", options.percentiles, "LOW,HIGH",
-        "percentiles between which `histogram` averages, such as 40,95")
-        .show_default();
-    add("--histogram-range", options.histogram_range, "LOW,HIGH",
+    command.title("Metering");
+    add("--delta", "VALUE", &options.delta,
+        "added to each luminance inside the logarithm; also the least metered luminance");
+    add("--percentiles", "LOW,HIGH", &options.percentiles,
+        "percentiles between which `histogram` averages, such as 40,95");
+    add("--histogram-range", "LOW,HIGH", &options.histogram_range,
         "range in log2 of luminance (default -8,3.5, and more if needed)");
-    add("--histogram-bins", options.histogram_bins, "N",
-        "number of histogram bins in that range; the first holds black")
-        .show_default();
-    const Option exact =
-        command.add_flag("--exact", options.exact,
-                         "compute percentiles and averages from all luminances, not from bins");
-    exact.group(group);
-    if (method) exact.needs(*method);
+    add("--histogram-bins", "N", &options.histogram_bins,
+        "number of histogram bins in that range; the first holds black");
+    command.add_flag("--exact", &options.exact,
+                     "compute percentiles and averages from all luminances, not from bins",
+                     {.needs = needs});
 }
 
-void add_shot_options(const Command& command, ShotOptions& options, const Option& frames,
-                      const Option* method) {
-    const char* const group = "Exposure of shots";
-    const Option adapt = command.add_flag("--adapt", options.adapt,
-                                          "adapt exposure from frame to frame, as an eye does");
-    adapt.needs(frames).group(group);
-    if (method) adapt.needs(*method);
-    const auto add = [&](const char* name, auto& value, const char* value_name, const char* help,
-                         const Option& needed) {
-        return command.add(name, value, help).value(value_name).needs(needed).group(group);
-    };
-    add("--adapt-up", options.up, "SPEED",
-        "adaptation speed when the scene gets brighter, per second (default 1.1; 1 with "
-        "`--adapt-form 0.98`)",
-        adapt);
-    add("--adapt-down", options.down, "SPEED",
-        "adaptation speed when the scene gets darker (default: as --adapt-up)", adapt);
-    add("--adapt-form", options.form, "NAME",
-        "`exponential` (1 - e^(-speed dt)) or `0.98` (1 - 0.98^(30 speed dt))", adapt)
-        .suggest({"exponential", "0.98"})
-        .show_default();
-    add("--adapt-start", options.start, "STOPS",
-        "exposure of the first frame (default: its metered exposure)", adapt);
-    add("--fps", options.fps, "N", "frames per second", adapt).show_default();
-    add("--meter-frames", options.meter_frames, "RANGE",
-        "frames of the whole shot, if --frames names only some of them", frames);
-    command
-        .add("--meter-cache", options.cache,
-             "file that keeps metered luminances; changed frames are metered again")
-        .value("FILE")
-        .group(group);
+void add_shot_options(const Command& command, ShotOptions& options,
+                      std::vector<std::string> needs) {
+    needs.emplace_back("--frames");
+    command.title("Exposure of shots");
+    command.add_flag("--adapt", &options.adapt,
+                     "adapt exposure from frame to frame, as an eye does", {.needs = needs});
+    command.add("--adapt-up", "SPEED", &options.up,
+                "adaptation speed when the scene gets brighter, per second (default 1.1; 1 with "
+                "`--adapt-form 0.98`)",
+                {.needs = {"--adapt"}});
+    command.add("--adapt-down", "SPEED", &options.down,
+                "adaptation speed when the scene gets darker (default: as --adapt-up)",
+                {.needs = {"--adapt"}});
+    command.add("--adapt-form", "NAME", &options.form,
+                "`exponential` (1 - e^(-speed dt)) or `0.98` (1 - 0.98^(30 speed dt))",
+                {.suggest = one_of({"exponential", "0.98"}), .needs = {"--adapt"}});
+    command.add("--adapt-start", "STOPS", &options.start,
+                "exposure of the first frame (default: its metered exposure)",
+                {.needs = {"--adapt"}});
+    command.add("--fps", "N", &options.fps, "frames per second", {.needs = {"--adapt"}});
+    command.add("--meter-frames", "RANGE", &options.meter_frames,
+                "frames of the whole shot, if --frames names only some of them",
+                {.needs = {"--frames"}});
+    command.add("--meter-cache", "FILE", &options.cache,
+                "file that keeps metered luminances; changed frames are metered again");
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -58,13 +58,6 @@ Suggestions ids_of(const std::vector<Item>& items) {
     return all;
 }
 
-Suggestions words_of(const std::vector<std::string>& words) {
-    Suggestions all;
-    for (const std::string& word : words)
-        all.words.push_back({word, ""});
-    return all;
-}
-
 }  // namespace
 
 Suggestions suggest_operators(const TypedValue& typed) {
@@ -137,12 +130,12 @@ Suggestions suggest_source_colors(const TypedValue& typed) {
     return all;
 }
 
-Suggestions suggest_encodings(const TypedValue& /*typed*/) {
-    return words_of(input_encoding_names());
+Suggestions suggest_encodings(const TypedValue& typed) {
+    return one_of(input_encoding_names())(typed);
 }
 
-Suggestions suggest_lut_formats(const TypedValue& /*typed*/) {
-    return words_of(lut_format_names());
+Suggestions suggest_lut_formats(const TypedValue& typed) {
+    return one_of(lut_format_names())(typed);
 }
 
 Suggestions suggest_lut_applications(const TypedValue& /*typed*/) {

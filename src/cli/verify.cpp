@@ -185,69 +185,42 @@ int run_verify(Options& options) {
 void add_verify(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command = program.add(
-        "verify",
+        "verify", "Checks",
         "Compare every backend with the double-precision reference and print the errors.");
-    command.group("Checks");
-    const char* const what = "What to verify";
-    const char* const how = "Measurement";
-    const char* const output = "Output";
-    command
-        .add("operators", options->operators,
-             "operators (default: all with their presets and looks, or the views of the config)")
-        .suggest(suggest_operators);
-    command
-        .add("--config", options->request.options.config,
-             "config file or its folder, also one of other software (default: a new config)")
-        .value("CONFIG")
-        .group(what);
-    command
-        .add("--lut", options->lut,
-             "LUT file: find the operator and the input encoding that made it, and the error")
-        .value("FILE")
-        .group(what);
-    command
-        .add("--display", options->request.options.displays,
-             "display; repeat for more (default: srgb, or all displays of the config)")
-        .value("NAME")
-        .suggest(suggest_config_displays)
-        .one_value_each()
-        .group(what);
-    command
-        .add("--input", options->request.options.input, "scene-linear color space of the samples")
-        .value("SPACE")
-        .suggest(suggest_spaces)
-        .show_default()
-        .group(what);
-    command.add("--picture", options->picture, "add the pixels of this picture to the samples")
-        .value("FILE")
-        .group(how);
-    command
-        .add_flag("--quick", options->request.is_quick,
-                  "use smaller sample sets: 9 grid points a side, 10,000 random colors")
-        .group(how);
-    command
-        .add_flag("--best-target", options->request.options.only_best_target,
-                  "measure only the fastest instruction set of this machine")
-        .group(how);
-    command.add_flag("--no-gpu", options->no_gpu, "leave out OpenColorIO's GPU path and shaders")
-        .group(how);
-    command
-        .add(
-            "--shaders", options->shaders,
-            "run shaders in these languages: glsl, glsl-es, wgsl, hlsl, dctl, c, or none (default: "
-            "all that this machine can run)")
-        .one_value_each()
-        .separated_by(',')
-        .value("LIST")
-        .suggest({"glsl", "glsl-es", "wgsl", "hlsl", "dctl", "c", "none"})
-        .group(how);
-    command.add_flag("--summary", options->summary, "print one line for each operator")
-        .group(output);
-    command.add_flag("--json", options->json, "print JSON").group(output);
-    const Option lut = command.option("--lut");
-    for (const char* other : {"--display", "--input", "--config", "--picture", "--quick",
-                              "--summary", "--best-target", "--no-gpu", "--shaders"})
-        lut.excludes(command.option(other));
+    command.argument(
+        "operators", &options->operators,
+        "operators (default: all with their presets and looks, or the views of the config)",
+        {.suggest = suggest_operators});
+    command.title("What to verify");
+    command.add("--config", "CONFIG", &options->request.options.config,
+                "config file or its folder, also one of other software (default: a new config)");
+    command.add("--lut", "FILE", &options->lut,
+                "LUT file: find the operator and the input encoding that made it, and the error");
+    command.add("--display", "NAME", &options->request.options.displays,
+                "display; repeat for more (default: srgb, or all displays of the config)",
+                {.suggest = suggest_config_displays, .takes_one_each = true});
+    command.add("--input", "SPACE", &options->request.options.input,
+                "scene-linear color space of the samples", {.suggest = suggest_spaces});
+    command.title("Measurement");
+    command.add("--picture", "FILE", &options->picture,
+                "add the pixels of this picture to the samples");
+    command.add_flag("--quick", &options->request.is_quick,
+                     "use smaller sample sets: 9 grid points a side, 10,000 random colors");
+    command.add_flag("--best-target", &options->request.options.only_best_target,
+                     "measure only the fastest instruction set of this machine");
+    command.add_flag("--no-gpu", &options->no_gpu, "leave out OpenColorIO's GPU path and shaders");
+    command.add(
+        "--shaders", "LIST", &options->shaders,
+        "run shaders in these languages: glsl, glsl-es, wgsl, hlsl, dctl, c, or none (default: "
+        "all that this machine can run)",
+        {.suggest = one_of({"glsl", "glsl-es", "wgsl", "hlsl", "dctl", "c", "none"}),
+         .takes_one_each = true,
+         .separator = ','});
+    command.title("Output");
+    command.add_flag("--summary", &options->summary, "print one line for each operator");
+    command.add_flag("--json", &options->json, "print JSON");
+    command.exclude("--lut", {"--display", "--input", "--config", "--picture", "--quick",
+                              "--summary", "--best-target", "--no-gpu", "--shaders"});
     command.footer(
         "The columns max, 99.9 % and mean are errors of code values over samples >= 0; max all "
         "includes negative values. Beyond f32: how far an error above its bound exceeds float32 "

@@ -21,9 +21,8 @@ int run(int argc, char** argv) {
     CommandLine program("tonewright_tools", "Write files of the project and its packages.",
                         TONEWRIGHT_VERSION);
     const auto add = [&](const char* name, const char* description) {
-        const Command command = program.add(name, description);
-        command.group("Tools");
-        command.add("-o", folder, "folder to write").value("FOLDER").required();
+        const Command command = program.add(name, "Tools", description);
+        command.add("-o", "FOLDER", &folder, "folder to write", {.is_required = true});
         return command;
     };
     add("catalogue", "Write the operator catalogue: operators.md, operators/ and curves/.")
@@ -36,10 +35,10 @@ int run(int argc, char** argv) {
         return kOk;
     });
     const Command pages = add("manual", "Write the manual pages of the command.");
-    pages.add("--reference", manual.reference, "document about .tone files, in Markdown")
-        .value("FILE")
-        .required();
-    pages.add("--date", manual.date, "date of all pages: 2026-01-31").value("DATE").required();
+    pages.add("--reference", "FILE", &manual.reference, "document about .tone files, in Markdown",
+              {.is_required = true});
+    pages.add("--date", "DATE", &manual.date, "date of all pages: 2026-01-31",
+              {.is_required = true});
     pages.action([&] {
         manual.tables = make_command_line()->tables();
         write_manual(manual, folder);

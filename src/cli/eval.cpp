@@ -2,10 +2,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -15,9 +13,8 @@
 #include "cli/color_line.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
-#include "tonewright/engine.h"
+#include "tasks/eval.h"
 #include "tonewright/registry.h"
-#include "verify/backends.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -29,9 +26,6 @@ struct Options : ViewOptions {
     bool explain = false;
     LutOptions lut;
 };
-
-/// Maps triplets.
-using ColorMap = std::function<void(const double* in, double* out, std::size_t count)>;
 
 /// Standard input as triplets, one a line, separated by commas or spaces; `#` begins a comment. It
 /// answers the received lines before it reads more, so that a program can wait for each answer.
@@ -77,8 +71,7 @@ class LineEvaluator {
         try {
             if (line.size() > kLongestLine) {
                 throw Error(fmt::format(
-                    "eval: standard input: line {} has more than {} bytes; expected three "
-                    "numbers",
+                    "eval: standard input: line {} has more than {} bytes; expected three numbers",
                     number_, kLongestLine));
             }
             if (const std::optional<Vector3> color = parse_color_line(line, number_))
@@ -108,99 +101,50 @@ class LineEvaluator {
     std::vector<double> colors_;
 };
 
-/// For an engine that takes floats.
-ColorMap through_floats(ColorRun run) {
-    return [run = std::move(run)](const double* in, double* out, std::size_t count) {
-        const std::vector<float> from(in, in + 3 * count);
-        std::vector<float> to(from.size());
-        run(from.data(), to.data(), count);
-        std::copy(to.begin(), to.end(), out);
-    };
-}
-
 ColorMap map_of_lut(const Options& options) {
     const SourceColor color = find_source_color(options.input);
     check_lut_options("eval", options.lut, options, color);
-    const auto lut = with_memory_for(options.lut.file, [&] {
-        return std::make_shared<const LutFile>(
-            open_lut(options.lut.file, options.lut.interpolation, lut_picture_reader()));
+    LutFile lut = with_memory_for(options.lut.file, [&] {
+        return open_lut(options.lut.file, options.lut.interpolation, lut_picture_reader());
     });
-    const Pipeline before =
-        before_lut("eval", with_stated_input(options.lut, color.name), options, color);
-    const auto encode = before.empty() ? nullptr : std::make_shared<const ReferenceEngine>(before);
-    return through_floats([lut, encode](const float* in, float* out, std::size_t count) {
-        if (!encode) {
-            lut->run_rgb(in, out, count);
-            return;
-        }
-        std::vector<double> encoded(3 * count);
-        encode->run_rgb(in, encoded.data(), count);
-        const std::vector<float> code(encoded.begin(), encoded.end());
-        lut->run_rgb(code.data(), out, count);
-    });
+    return color_map(std::move(lut), before_lut("eval", with_stated_input(options.lut, color.name),
+                                                options, color));
 }
 
-View view_of(const Options& options) {
+EvalRequest request_of(Options options) {
+    if (options.op.empty()) {
+        throw Error(
+            "eval: OPERATOR is missing; expected an id from `tonewright list`, or --lut FILE");
+    }
+    EvalRequest request;
+    // With --explain, it is not read.
+    if (!options.explain) {
+        request.engine = static_cast<EvalEngine>(
+            find_choice("engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"}));
+    }
+    take_lut_options("eval", options.lut, options, LutOption::yes);
     const SourceColor color = find_source_color(options.input);
     if (options.inverse && !color.decode.empty()) {
         throw Error("eval: --input is " + color.name +
                     "; expected a scene-linear space with --inverse");
     }
-    return options.view(color);
-}
-
-Pipeline pipeline_of(const Options& options, const View& view) {
-    return options.inverse ? build_inverse_view(view) : build_view(view);
-}
-
-void check_has_operator(const Options& options) {
-    if (options.op.empty()) {
-        throw Error(
-            "eval: OPERATOR is missing; expected an id from `tonewright list`, or --lut FILE");
-    }
-}
-
-ColorMap map_of_operator(const Options& given) {
-    Options options = given;
-    check_has_operator(options);
-    const std::size_t kind =
-        find_choice("engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
-    take_lut_options("eval", options.lut, options, LutOption::yes);
-    const View view = view_of(options);
-    const Pipeline pipeline = pipeline_of(options, view);
-    if (kind == 0) {
-        const auto engine = std::make_shared<const ReferenceEngine>(pipeline);
-        return [engine](const double* in, double* out, std::size_t count) {
-            std::array<std::vector<double>, 3> plane;
-            for (std::size_t i = 0; i < 3 * count; ++i)
-                plane[i % 3].push_back(in[i]);
-            const std::array<double*, 3> p = {plane[0].data(), plane[1].data(), plane[2].data()};
-            engine->run({p[0], p[1], p[2]}, p, count);
-            for (std::size_t i = 0; i < 3 * count; ++i)
-                out[i] = plane[i % 3][i / 3];
-        };
-    }
-    constexpr std::array kBackends = {Backend::Id::simd, Backend::Id::ocio_cpu,
-                                      Backend::Id::ocio_gpu};
-    return through_floats(
-        find_backend(kBackends.at(kind - 1)).start({view, pipeline, nullptr, user_cache_folder()}));
-}
-
-int run_explain(Options options) {
-    check_has_operator(options);
-    take_lut_options("eval", options.lut, options, LutOption::yes);
-    const View view = view_of(options);
-    const Pipeline pipeline = pipeline_of(options, view);
-    fmt::print("{}", explain(pipeline, {}, view.op.op->bounds.simd_goal));
-    return kOk;
+    request.view = options.view(color);
+    request.is_inverse = options.inverse;
+    request.cache_folder = user_cache_folder();
+    return request;
 }
 
 int run_eval(const Options& options) {
-    if (options.explain) return run_explain(options);
-    const ColorMap map = options.lut.file.empty() ? map_of_operator(options) : map_of_lut(options);
-    LineEvaluator(map, options.digits).run();
+    if (options.explain) {
+        fmt::print("{}", explain(request_of(options)));
+        return kOk;
+    }
+    const bool is_lut = !options.lut.file.empty();
+    LineEvaluator(is_lut ? map_of_lut(options) : color_map(request_of(options)), options.digits)
+        .run();
     return kOk;
-}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): std::function owns its state
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): std::function owns its
+   // state
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "tonewright/registry.h"
@@ -17,6 +18,12 @@ using Kind = ParameterSpec::Kind;
 const char* kind_name(Kind kind) {
     if (kind == Kind::number) return "number";
     return kind == Kind::choice ? "choice" : "text";
+}
+
+const char* kind_name(SourceColorName::Kind kind) {
+    // In the order of their declaration.
+    constexpr std::array kNames = {"linear", "display", "config", "interop", "encoding", "pattern"};
+    return kNames.at(static_cast<std::size_t>(kind));
 }
 
 Json to_json(const ParameterSpec& p, bool is_live) {
@@ -101,6 +108,24 @@ Json to_json(const Display& display) {
             {"title", display.title},
             {"aliases", display.aliases},
             {"source", display.source}};
+}
+
+Json to_json(const SourceColorName& name) {
+    return {{"id", name.id},
+            {"title", name.title},
+            {"aliases", name.aliases},
+            {"kind", kind_name(name.kind)}};
+}
+
+Json catalogue_to_json() {
+    Json spaces = Json::array();
+    for (const InputSpace& s : all_input_spaces())
+        spaces.push_back({{"id", s.id}, {"title", s.title}, {"aliases", s.aliases}});
+    return {{"operators", all_to_json(all_operators())},
+            {"local_operators", all_to_json(local_operators())},
+            {"displays", all_to_json(all_displays())},
+            {"spaces", spaces},
+            {"inputs", all_to_json(all_source_color_names())}};
 }
 
 Json to_json(const LutApplication& host, const MessageStyle& style) {

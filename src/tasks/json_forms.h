@@ -12,6 +12,7 @@
 #include "tonewright/lut_applications.h"
 #include "tonewright/lut_match.h"
 #include "tonewright/pipeline.h"
+#include "tonewright/source_color.h"
 #include "tonewright/verify.h"
 #include "tonewright/view.h"
 
@@ -26,6 +27,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 [[nodiscard]] Json to_json(const Operator& op);
 [[nodiscard]] Json to_json(const Display& display);
+[[nodiscard]] Json to_json(const SourceColorName& name);
 /// @param style  of the parameters that its steps name
 [[nodiscard]] Json to_json(const LutApplication& host, const MessageStyle& style);
 [[nodiscard]] Json to_json(const ParityRow& row);
@@ -40,5 +42,8 @@ template <class Values, class... Style>
         all.push_back(to_json(value, style...));
     return all;
 }
+
+/// All operators, displays, spaces and names of source colors.
+[[nodiscard]] Json catalogue_to_json();
 
 TONEWRIGHT_NAMESPACE_END

@@ -13,11 +13,12 @@
 
 #include "base/atomic_file.h"
 #include "base/format_number.h"
-#include "cli/list.h"
+#include "cli/messages.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "plot/curve_plot.h"
 #include "plot/gray_curve.h"
+#include "tasks/operator_facts.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/registry.h"
@@ -639,10 +640,12 @@ void write_catalogue(const std::string& folder) {
         const std::string plot =
             fmt::format("![Curve of {}](../curves/{}.svg)\n\n", op.title, op.id);
         add_page(op.id,
-                 operator_section(op, plot + measured_line(op), true) + links_of(op, groups));
+                 render(operator_section(op, plot + measured_line(op), true), command_style()) +
+                     links_of(op, groups));
     }
     for (const Operator& op : local_operators())
-        add_page(op.id, operator_section(op, {}, true) + links_of(op, groups));
+        add_page(op.id,
+                 render(operator_section(op, {}, true), command_style()) + links_of(op, groups));
     if (!groups.empty()) {
         const std::vector<float> samples = non_negative_samples();
         std::string page = dialect_introduction(samples.size() / 3);

@@ -12,7 +12,7 @@
 #include "measure/laws.h"
 #include "plot/gray_curve.h"
 #include "plot/terminal_plot.h"
-#include "tasks/json.h"
+#include "tasks/json_forms.h"
 #include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -26,15 +26,6 @@ struct Options : ViewOptions {
 };
 
 using Verdict = LawResult::Verdict;
-
-void print_json(const View& view, const std::vector<LawResult>& results) {
-    Json laws = Json::array();
-    for (const LawResult& r : results) {
-        laws.push_back(
-            {{"law", r.law}, {"verdict", to_string(r.verdict)}, {"text", r.text}, {"x", r.x}});
-    }
-    fmt::print("{}\n", Json({{"operator", operator_text(view.op)}, {"laws", laws}}).dump(2));
-}
 
 void print_text(const View& view, const Options& options, const std::vector<LawResult>& results) {
     std::vector<double> places;
@@ -57,7 +48,8 @@ int run_check(const Options& options) {
     const View view = options.view();
     const std::vector<LawResult> results = check_laws(view.op);
     if (options.json) {
-        print_json(view, results);
+        const Json object = {{"operator", operator_text(view.op)}, {"laws", all_to_json(results)}};
+        fmt::print("{}\n", object.dump(2));
     } else {
         print_text(view, options, results);
     }

@@ -27,10 +27,7 @@ void add_compare(CommandLine& program) {
                 {.is_required = true});
     command.add("--exposure", "STOPS", &options->exposure,
                 "exposure before the operators, in stops");
-    command.add("--input", "SPACE", &options->input,
-                "color space (`tonewright list --inputs`), or `auto`, as the file says",
-                {.suggest = suggest_source_colors});
-    add_input_units(command, options->input_units, options->reference_white);
+    add_light_options(command, options->light);
     command.title("Picture");
     add_resize(command, options->resize);
     add_picture_choice(command, options->picture);
@@ -63,16 +60,14 @@ void add_compare(CommandLine& program) {
         "  tonewright compare render.exr -o sheet.png --false-color\n"
         "  tonewright compare render.exr hable:white=4 hable:white=11.2 -o sheet.jpg\n"
         "  tonewright compare render.exr clamp agx_blender --split 0.5 -o split.png");
-    auto given = std::make_shared<std::set<std::string>>();
     command.action(
-        [options, given] {
+        [options] {
             const ResultLine line;
-            options->is_resized = given->contains("--resize");
             picture_commands().compare(*options);
             line.print(fmt::format("compare: {} -> {}", options->in, options->file));
             return kOk;
         },
-        given.get());
+        &options->given);
 }
 
 void add_sheet(CommandLine& program) {

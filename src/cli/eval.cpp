@@ -143,8 +143,7 @@ int run_eval(const Options& options) {
     LineEvaluator(is_lut ? map_of_lut(options) : color_map(request_of(options)), options.digits)
         .run();
     return kOk;
-}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): std::function owns its
-   // state
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): std::function owns its state
 
 }  // namespace
 

@@ -23,10 +23,7 @@ void add_meter(CommandLine& program) {
     command.title("Pictures");
     command.add("--frames", "RANGE", &options->frames,
                 "frames such as 1001-1100; IN has %04d, #### or @@@@ for the number");
-    command.add("--input", "SPACE", &options->input,
-                "color space (`tonewright list --inputs`), or `auto`, as the file says",
-                {.suggest = suggest_source_colors});
-    add_input_units(command, options->input_units, options->reference_white);
+    add_light_options(command, options->light);
     add_picture_input(command, options->picture);
     add_exposure_options(command, options->metering);
     add_shot_options(command, options->shot);

@@ -381,55 +381,47 @@ std::string help_command(const CLI::App& command) {
 /// does that job here.
 std::string hint_of(std::string_view typed) {
     struct Hint {
-        std::string_view option;
+        std::string_view options;
         std::string_view text;
     };
+    // `-f` is what is left of ffmpeg's -vf.
     static constexpr Hint kHints[] = {
-        {"--gamma",
+        {" --gamma -gamma ",
          "the display's curve is --display g22, or another one that `tonewright list` shows"},
-        {"-gamma",
-         "the display's curve is --display g22, or another one that `tonewright list` shows"},
-        {"--colorspace", "use --input SPACE and --display NAME"},
-        {"-colorspace", "use --input SPACE and --display NAME"},
-        {"--colorconvert", "use --input SPACE and --display NAME"},
-        {"--tocolorspace", "use --display NAME"},
-        {"--iscolorspace", "use --input SPACE"},
-        {"--ociodisplay", "use --operator NAME and --display NAME"},
-        {"--channels", "use --layer NAME, or oiiotool --ch R,G,B before"},
-        {"--ch", "use --layer NAME, or oiiotool --ch R,G,B before"},
-        {"--autoorient", "pictures are turned by their orientation anyway"},
-        {"-auto-orient", "pictures are turned by their orientation anyway"},
-        {"--resize", "only `apply` and `compare` resize, before the operator"},
-        {"-resize", "use `tonewright apply --resize SIZE`"},
-        {"--crop", "use oiiotool --crop before"},
-        {"--cdl", "an ASC CDL is a LUT: use --lut FILE.cdl or .cc, or a .tone file"},
-        {"--mulc", "use --exposure STOPS"},
-        {"--powc", "use a .tone file"},
-        {"--unpremultiply", "use --unpremult"},
-        {"--flatten", "use --alpha over:R,G,B"},
-        {"--over", "use --alpha over:R,G,B"},
-        {"-flatten", "use --alpha over:R,G,B"},
-        {"-background", "use --alpha over:R,G,B"},
-        {"-alpha", "use --alpha keep, ignore, opaque or over:R,G,B"},
-        {"-depth", "use -d uint8 or uint16"},
-        {"-bitdepth", "use -d uint8, uint10, uint12 or uint16"},
-        {"-pix_fmt", "use -d uint8 or uint16"},
-        {"-quality", "use --quality N"},
-        {"-sampling-factor", "use --subsampling 4:4:4"},
-        {"-f",  // what is left of -vf
-         "filters of ffmpeg take a LUT: use `tonewright bake --for ffmpeg`"},
-        {"-i", "the input is the first argument"},
-        {"-y", "an existing output is replaced anyway"},
-        {"-n", "use --skip-existing with --frames"},
-        {"--catalogue", "use build/release/bin/tonewright_tools catalogue -o FOLDER"},
-        {"--npm", "use build/release/bin/tonewright_tools npm -o FOLDER"},
-        {"manual", "use build/release/bin/tonewright_tools manual -o FOLDER"},
-        {"--saturation", "use --set, or a .tone file; `tonewright list OPERATOR` shows parameters"},
-        {"--contrast", "use --set, or a .tone file; `tonewright list OPERATOR` shows parameters"},
+        {" --colorspace -colorspace --colorconvert ", "use --input SPACE and --display NAME"},
+        {" --tocolorspace ", "use --display NAME"},
+        {" --iscolorspace ", "use --input SPACE"},
+        {" --ociodisplay ", "use --operator NAME and --display NAME"},
+        {" --channels --ch ", "use --layer NAME, or oiiotool --ch R,G,B before"},
+        {" --autoorient -auto-orient ", "pictures are turned by their orientation anyway"},
+        {" --resize ", "only `apply` and `compare` resize, before the operator"},
+        {" -resize ", "use `tonewright apply --resize SIZE`"},
+        {" --crop ", "use oiiotool --crop before"},
+        {" --cdl ", "an ASC CDL is a LUT: use --lut FILE.cdl or .cc, or a .tone file"},
+        {" --mulc ", "use --exposure STOPS"},
+        {" --powc ", "use a .tone file"},
+        {" --unpremultiply ", "use --unpremult"},
+        {" --flatten --over -flatten -background ", "use --alpha over:R,G,B"},
+        {" -alpha ", "use --alpha keep, ignore, opaque or over:R,G,B"},
+        {" -depth -pix_fmt ", "use -d uint8 or uint16"},
+        {" -bitdepth ", "use -d uint8, uint10, uint12 or uint16"},
+        {" -quality ", "use --quality N"},
+        {" -sampling-factor ", "use --subsampling 4:4:4"},
+        {" -f ", "filters of ffmpeg take a LUT: use `tonewright bake --for ffmpeg`"},
+        {" -i ", "the input is the first argument"},
+        {" -y ", "an existing output is replaced anyway"},
+        {" -n ", "use --skip-existing with --frames"},
+        {" --catalogue ", "use build/release/bin/tonewright_tools catalogue -o FOLDER"},
+        {" --npm ", "use build/release/bin/tonewright_tools npm -o FOLDER"},
+        {" manual ", "use build/release/bin/tonewright_tools manual -o FOLDER"},
+        {" --saturation --contrast ",
+         "use --set, or a .tone file; `tonewright list OPERATOR` shows parameters"},
     };
     const auto* const end = std::end(kHints);
-    const auto* const found = std::find_if(std::begin(kHints), end,
-                                           [&](const Hint& hint) { return hint.option == typed; });
+    const std::string word = fmt::format(" {} ", typed);
+    const auto* const found = std::find_if(std::begin(kHints), end, [&](const Hint& hint) {
+        return hint.options.find(word) != std::string_view::npos;
+    });
     return found == end ? std::string() : fmt::format("; {}", found->text);
 }
 

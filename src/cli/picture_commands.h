@@ -18,37 +18,28 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Functions that return int return the exit code. All throw Error and FileError as the library
 /// does.
-class PictureCommands {
-  public:
-    PictureCommands() = default;
-    PictureCommands(const PictureCommands&) = delete;
-    PictureCommands& operator=(const PictureCommands&) = delete;
-    virtual ~PictureCommands() = default;
-
+struct PictureCommands {
     /// Called once, after loading.
-    virtual void use_messages(const MessageOptions& options) const = 0;
+    void (*use_messages)(const MessageOptions& options);
 
-    [[nodiscard]] virtual int apply(const ApplyOptions& options) const = 0;
-    [[nodiscard]] virtual int meter(const MeterCommandOptions& options) const = 0;
-    virtual void compare(const CompareOptions& options) const = 0;
-    virtual void chart(const ChartOptions& options) const = 0;
-    virtual void sheet(const SheetOptions& options) const = 0;
-    virtual void info(const InfoOptions& options) const = 0;
+    int (*apply)(const ApplyOptions& options);
+    int (*meter)(const MeterCommandOptions& options);
+    void (*compare)(const CompareOptions& options);
+    void (*chart)(const ChartOptions& options);
+    void (*sheet)(const SheetOptions& options);
+    void (*info)(const InfoOptions& options);
 
     /// Scene-linear RGB of a picture: every pixel up to a million, then every n-th.
-    [[nodiscard]] virtual std::vector<float> read_pixels(const std::string& path) const = 0;
+    std::vector<float> (*read_pixels)(const std::string& path);
     /// @param width  pixels
-    virtual void write_plot(const CurvePlot& plot, const std::string& path, int width) const = 0;
-    [[nodiscard]] virtual Lut read_lut(const std::string& path) const = 0;
+    void (*write_plot)(const CurvePlot& plot, const std::string& path, int width);
+    Lut (*read_lut)(const std::string& path);
     /// @param bits  8, 16 or 32 (float)
-    virtual void write_lut(const Lut& lut, LutFormat format, const std::string& path,
-                           int bits) const = 0;
+    void (*write_lut)(const Lut& lut, LutFormat format, const std::string& path, int bits);
     /// The set of `bake --all`: LUTs by application, thumbnails, README.md, MANIFEST.csv.
     /// @param application  only its LUTs; empty: all
-    virtual void write_shipped_luts(const std::string& folder,
-                                    const std::string& application) const = 0;
-    [[nodiscard]] virtual ReportPicture read_report_picture(
-        const ReportPictureOptions& options) const = 0;
+    void (*write_shipped_luts)(const std::string& folder, const std::string& application);
+    ReportPicture (*read_report_picture)(const ReportPictureOptions& options);
 };
 
 /// Loads the module at the first call.
@@ -66,6 +57,6 @@ extern "C" const PictureCommands* tonewright_picture_commands(const char* build)
 inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
 /// The release, and the number of this interface: increase it with every change of the interface
 /// or of the options.
-inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 10";
+inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 11";
 
 TONEWRIGHT_NAMESPACE_END

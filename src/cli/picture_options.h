@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ struct PictureChoice {
     std::string layer;
     /// Unset: the default of the library.
     std::optional<double> max_pixels = {};
+};
+
+/// The meaning of a picture's numbers. @see TonemapOptions
+struct LightOptions {
+    std::string input = "auto";
+    std::string units = "relative";
+    double reference_white = kUnitLuminance;
 };
 
 /// Options for reading pictures: the choice, alpha, threads, time limit.
@@ -100,9 +108,7 @@ struct ApplyOptions : ViewOptions {
 struct MeterCommandOptions {
     std::vector<std::string> in;
     std::string frames;
-    std::string input = "auto";
-    std::string input_units = "relative";
-    double reference_white = kUnitLuminance;
+    LightOptions light;
     bool json = false;
     PictureInput picture;
     ExposureOptions metering;
@@ -116,11 +122,10 @@ struct CompareOptions {
     std::string pictures;
     /// @see ReadOptions::resize
     std::string resize;
-    bool is_resized = false;
+    /// Names of the options that the command line has.
+    std::set<std::string> given = {};
     double exposure = 0;
-    std::string input = "auto";
-    std::string input_units = "relative";
-    double reference_white = kUnitLuminance;
+    LightOptions light;
     int columns = 0;
     int cell_width = 480;
     bool has_false_color = false;
@@ -156,8 +161,7 @@ struct InfoOptions {
 /// A picture of the page.
 struct ReportPictureOptions {
     std::string path;  // empty: the chart
-    std::string input_units = "relative";
-    double reference_white = kUnitLuminance;
+    LightOptions light;
     /// A larger picture is made smaller.
     int width = 960;
     PictureChoice choice;

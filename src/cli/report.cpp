@@ -91,7 +91,7 @@ void add_report(CommandLine& program) {
         {.suggest = suggest_operators, .takes_one_each = true, .separator = ','});
     command.add("--width", "N", &options->picture.width,
                 "largest width of an embedded picture in pixels", {.range = {{320, 8192}}});
-    add_input_units(command, options->picture.input_units, options->picture.reference_white);
+    add_input_units(command, options->picture.light.units, options->picture.light.reference_white);
     command.title("Pictures");
     add_picture_choice(command, options->picture.choice);
     command.title("Contents");

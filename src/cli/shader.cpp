@@ -51,17 +51,6 @@ ShaderTables tables_of(const Options& options) {
                                        : ShaderTables::by_size;
 }
 
-/// The languages whose files have this extension.
-std::vector<std::string> languages_of(const std::string& extension) {
-    std::vector<std::string> ids;
-    for (const ShaderLanguageInfo& language : shader_languages()) {
-        // `.glsl` means GLSL; GLSL ES needs --language.
-        if ("." + language.id == extension) return {language.id};
-        if (language.extension == extension) ids.push_back(language.id);
-    }
-    return ids;
-}
-
 /// The language of --language, else of the file's extension.
 const ShaderLanguageInfo& language_of(const Options& options) {
     const std::string extension = extension_of(options.file);

@@ -35,6 +35,13 @@ void add_input_units(const Command& command, std::string& units, double& referen
                 "luminance that becomes 1.0, of PQ, HLG and cd/m2");
 }
 
+void add_light_options(const Command& command, LightOptions& options) {
+    command.add("--input", "SPACE", &options.input,
+                "color space (`tonewright list --inputs`), or `auto`, as the file says",
+                {.suggest = suggest_source_colors});
+    add_input_units(command, options.units, options.reference_white);
+}
+
 void add_lut_input_options(const Command& command, LutOptions& options) {
     command.add(
         "--input-encoding", "NAME", &options.encoding,

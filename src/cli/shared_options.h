@@ -24,6 +24,9 @@ void add_view_options(const Command& command, ViewOptions& options,
 /// --input-units, --reference-white.
 void add_input_units(const Command& command, std::string& units, double& reference_white);
 
+/// --input and these, for pictures.
+void add_light_options(const Command& command, LightOptions& options);
+
 /// --input-encoding, --lut-space, for a command that has one operator.
 void add_lut_input_options(const Command& command, LutOptions& options);
 

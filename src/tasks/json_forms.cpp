@@ -176,4 +176,11 @@ Json to_json(const LintFinding& finding) {
     return {{"level", level_name(finding.level)}, {"where", finding.where}, {"what", finding.what}};
 }
 
+Json to_json(const LawResult& result) {
+    return {{"law", result.law},
+            {"verdict", to_string(result.verdict)},
+            {"text", result.text},
+            {"x", result.x}};
+}
+
 TONEWRIGHT_NAMESPACE_END

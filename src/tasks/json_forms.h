@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "measure/laws.h"
 #include "tasks/json.h"
 #include "tonewright/error.h"
 #include "tonewright/lint.h"
@@ -33,6 +34,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] Json to_json(const ParityRow& row);
 [[nodiscard]] Json to_json(const LutMatch& match);
 [[nodiscard]] Json to_json(const LintFinding& finding);
+[[nodiscard]] Json to_json(const LawResult& result);
 
 /// An array of such objects.
 template <class Values, class... Style>

@@ -93,4 +93,14 @@ ShaderSetResult write_shader_set(const ShaderSetRequest& set) {
     return result;
 }
 
+std::vector<std::string> languages_of(const std::string& extension) {
+    std::vector<std::string> ids;
+    for (const ShaderLanguageInfo& language : shader_languages()) {
+        // `.glsl` means GLSL; GLSL ES has to be named.
+        if ("." + language.id == extension) return {language.id};
+        if (language.extension == extension) ids.push_back(language.id);
+    }
+    return ids;
+}
+
 TONEWRIGHT_NAMESPACE_END

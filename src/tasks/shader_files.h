@@ -49,4 +49,7 @@ struct ShaderSetResult {
 /// @throws FileError  a file cannot be written
 [[nodiscard]] ShaderSetResult write_shader_set(const ShaderSetRequest& request);
 
+/// Ids of the languages whose files have this extension: `.glsl`.
+[[nodiscard]] std::vector<std::string> languages_of(const std::string& extension);
+
 TONEWRIGHT_NAMESPACE_END

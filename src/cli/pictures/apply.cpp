@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <tuple>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -83,23 +84,9 @@ ApplyFiles files_of(const ApplyOptions& options) {
         named.pop_back();
     }
     const bool is_shot = options.given.contains("--frames");
-    std::vector<std::string> inputs;
+    std::vector<std::string> inputs = named;
     bool has_many = false;
-    for (const std::string& name : named) {
-        std::vector<std::string> expanded = {name};
-        const bool is_list = name.size() > 1 && name.front() == '@' && !is_shot;
-        if (is_list) expanded = names_of_list(name.substr(1));
-        has_many = has_many || is_list;
-        for (const std::string& entry : expanded) {
-            if (has_output && !is_shot && is_folder(entry)) {
-                const std::vector<std::string> pictures = pictures_of_folder(entry);
-                inputs.insert(inputs.end(), pictures.begin(), pictures.end());
-                has_many = true;
-            } else {
-                inputs.push_back(entry);
-            }
-        }
-    }
+    if (!is_shot) std::tie(inputs, has_many) = expanded_inputs(named, has_output);
     if (has_output && !is_shot &&
         (has_many || inputs.size() > 1 || output.ends_with('/') || is_folder(output))) {
         const std::string format = lowercase(options.format);
@@ -172,10 +159,6 @@ TonemapOptions tonemap_options_of(const ApplyOptions& options, const WriteOption
     return tonemap;
 }
 
-ShotRequest::Missing missing_of(const ApplyOptions& options) {
-    return parse_missing(options.frames.missing);
-}
-
 bool takes_sequence(const ApplyOptions& options) {
     return is_same_name(options.statistics, "sequence");
 }
@@ -197,7 +180,8 @@ ExposureRequest exposure_request_of(const ApplyOptions& options, const TonemapOp
     if (options.shot.adapt) request.adaptation = adaptation_of(options.shot);
     if (!options.shot.meter_frames.empty())
         request.frames = parse_frames(options.shot.meter_frames, "meter_frames");
-    request.leaves_out_missing = missing_of(options) != ShotRequest::Missing::error;
+    request.leaves_out_missing =
+        parse_missing(options.frames.missing) != ShotRequest::Missing::error;
     return request;
 }
 
@@ -310,7 +294,8 @@ void print_summary(const std::string& text, bool is_all_written) {
 }
 
 /// Lines for failures, and one for all.
-void print_summary(const Shot& shot) {
+/// @returns  the exit code
+int print_summary(const Shot& shot) {
     std::vector<int> failed;
     std::size_t skipped = 0;
     for (std::size_t i = 0; i < shot.frames.size(); ++i) {
@@ -328,12 +313,7 @@ void print_summary(const Shot& shot) {
     if (!failed.empty())
         text += fmt::format(", {} failed: {}", failed.size(), format_frames(failed));
     print_summary(text, written == count && shot.held_count == 0);
-}
-
-int exit_code_of(const std::vector<FrameFiles>& files) {
-    const bool any_failed = std::any_of(files.begin(), files.end(),
-                                        [](const FrameFiles& f) { return f.problem.has_value(); });
-    return any_failed ? kCheckFailed : kOk;
+    return failed.empty() ? kOk : kCheckFailed;
 }
 
 /// "render.exr (640 x 360 half, lin_rec709) -> out.png: AgX (agx_blender), exposure +1, sRGB,
@@ -387,7 +367,7 @@ int apply_to_shot(Tonemapper& tonemapper, const ApplyOptions& options, const Fra
     Shot shot = plan_shot({.in = pattern.in,
                            .out = pattern.out,
                            .numbers = parse_frames(options.frames.frames),
-                           .missing = missing_of(options),
+                           .missing = parse_missing(options.frames.missing),
                            .skips_existing = options.frames.skip_existing,
                            .is_in_place = options.is_in_place});
     {
@@ -413,8 +393,7 @@ int apply_to_shot(Tonemapper& tonemapper, const ApplyOptions& options, const Fra
     sequence.skip_existing = options.frames.skip_existing;
     sequence.jobs = options.frames.jobs;
     run(tonemapper, shot.frames, sequence, options, messages, "frames");
-    print_summary(shot);
-    return exit_code_of(shot.frames);
+    return print_summary(shot);
 }
 
 int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
@@ -435,7 +414,7 @@ int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
                                    files.size() == 1 ? "" : "s", written);
     if (failed > 0) text += fmt::format(", {} failed", failed);
     print_summary(text, failed == 0);
-    return exit_code_of(files);
+    return failed == 0 ? kOk : kCheckFailed;
 }
 
 int apply_to_picture(Tonemapper& tonemapper, const ApplyOptions& options,

@@ -3,7 +3,7 @@
 
 #include "cli/picture_commands.h"
 
-/// Long functions of the implementation of PictureCommands.
+/// Functions of PictureCommands that are in files of their own.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 int run_apply(const ApplyOptions& options);

@@ -42,9 +42,9 @@ ComparisonRequest request_of(const CompareOptions& options) {
     request.pictures = options.pictures;
     request.operators = operators_of(options);
     request.tonemap.exposure_stops = options.exposure;
-    request.tonemap.input = options.input;
-    request.tonemap.input_units = parse_input_units(options.input_units);
-    request.tonemap.reference_white = options.reference_white;
+    request.tonemap.input = options.light.input;
+    request.tonemap.input_units = parse_input_units(options.light.units);
+    request.tonemap.reference_white = options.light.reference_white;
     request.resize = options.resize;
     request.max_pixels = options.picture.max_pixels.value_or(kMaxPixels);
     request.columns = options.columns;
@@ -59,7 +59,8 @@ ComparisonRequest request_of(const CompareOptions& options) {
 }  // namespace
 
 void run_compare(const CompareOptions& options) {
-    if (options.is_resized) check_resize("compare", options.resize, options.picture);
+    if (options.given.contains("--resize"))
+        check_resize("compare", options.resize, options.picture);
     ComparisonRequest request = request_of(options);
     if ((options.split || options.difference) &&
         (options.operators.size() != 2 || options.has_false_color)) {
@@ -70,7 +71,7 @@ void run_compare(const CompareOptions& options) {
     }
     try {
         Comparison comparison(std::move(request));
-        OIIO::ImageBuf picture = read_picture(options.in, options.picture, options.input);
+        OIIO::ImageBuf picture = read_picture(options.in, options.picture, options.light.input);
         const QuietStderr quiet;
         comparison.write(std::move(picture));
     } catch (const PictureError& e) {

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include "base/format_number.h"
@@ -17,6 +16,7 @@
 #include "cli/pictures/picture_messages.h"
 #include "cli/pictures/requests.h"
 #include "image/picture_file.h"
+#include "plot/terminal_plot.h"
 #include "tasks/json.h"
 #include "tasks/pictures/frames.h"
 #include "tasks/pictures/meter_cache.h"
@@ -25,46 +25,14 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-using Method = ExposureRule::Method;
-
-struct NamedMethod {
-    Method method;
-    const char* name;   // on the command line
-    const char* title;  // in the table
-};
-constexpr std::array<NamedMethod, 4> kMethods = {
-    {{Method::log_average, "log-average", "log average"},
-     {Method::histogram, "histogram", "histogram"},
-     {Method::mean, "mean", "mean"},
-     {Method::maximum, "max", "maximum"}}};
-
-/// A picture, and the options for it.
-struct Metered {
-    MeteredPicture picture;
-    std::optional<int> frame;
-    std::optional<double> adapted;  // stops
-};
-
-Suggestion suggestion(const Metering& metering, ExposureRule rule, Method method, double delta) {
+Suggestion suggestion(const Metering& metering, ExposureRule rule, ExposureRule::Method method,
+                      double delta) {
     rule.method = method;
     return suggest_exposure(metering, rule, delta);
 }
 
 // ---------------------------------------------------------------------------------------------
 // For people
-
-/// True if the terminal shows more than ASCII.
-bool is_utf8() {
-    for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        const char* value = std::getenv(name);
-        if (!value || !*value) continue;
-        std::string text = value;
-        std::transform(text.begin(), text.end(), text.begin(),
-                       [](unsigned char c) { return std::tolower(c); });
-        return text.find("utf-8") != std::string::npos || text.find("utf8") != std::string::npos;
-    }
-    return false;
-}
 
 /// Bins side by side as bars, log2 of luminance from left to right.
 void draw_histogram(const Metering& metering, double metered) {
@@ -86,7 +54,7 @@ void draw_histogram(const Metering& metering, double metered) {
     }
     const double most = *std::max_element(columns.begin(), columns.end());
     if (most == 0) return;
-    const bool has_blocks = is_utf8();
+    const bool has_blocks = terminal_text() == TerminalText::utf8;
     static constexpr std::array kBlocks = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
     fmt::print("\n");
     for (std::size_t row = 0; row < kRows; ++row) {
@@ -134,7 +102,7 @@ void draw_histogram(const Metering& metering, double metered) {
                metering.histogram_min, metering.histogram_max, 100 * metering.share_outside());
 }
 
-void print_picture(const Metered& metered, const MeterCommandOptions& options,
+void print_picture(const MeteredFrame& metered, const MeterCommandOptions& options,
                    const ExposureRule& rule) {
     const Metering& m = metered.picture.metering;
     fmt::print("{}\n\n", one_line(metered.picture.path));
@@ -145,7 +113,7 @@ void print_picture(const Metered& metered, const MeterCommandOptions& options,
     }
     fmt::print("\n\n  {:<14}{:>12}{:>9}{:>11}\n", "", "luminance", "EV100", "exposure");
     double chosen = 0;
-    for (const NamedMethod& method : kMethods) {
+    for (const MeterMethodNames& method : kMeterMethods) {
         const Suggestion s = suggestion(m, rule, method.method, options.metering.delta);
         const bool is_chosen = method.method == rule.method;
         if (is_chosen) chosen = s.luminance;
@@ -169,22 +137,22 @@ void print_picture(const Metered& metered, const MeterCommandOptions& options,
     if (metered.adapted) fmt::print("\n  adapted exposure {:+.2f}\n", *metered.adapted);
 }
 
-void print_table(const std::vector<Metered>& all, const MeterCommandOptions& options,
+void print_table(const std::vector<MeteredFrame>& all, const MeterCommandOptions& options,
                  const ExposureRule& rule) {
     std::size_t width = 7;
-    for (const Metered& metered : all) {
-        width = std::max(width, metered.frame ? std::to_string(*metered.frame).size()
-                                              : metered.picture.path.size());
+    for (const MeteredFrame& metered : all) {
+        width = std::max(width, metered.number ? std::to_string(*metered.number).size()
+                                               : metered.picture.path.size());
     }
     width = std::min<std::size_t>(width, 28);
     const bool adapts = options.shot.adapt;
     fmt::print("{:<{}}{:>12}{:>12}{:>10}{:>10}{:>8}{:>10}{}\n",
-               all.front().frame ? "frame" : "picture", width, "log average", "histogram", "mean",
+               all.front().number ? "frame" : "picture", width, "log average", "histogram", "mean",
                "max", "EV100", "exposure", adapts ? "   adapted" : "");
-    for (const Metered& metered : all) {
+    for (const MeteredFrame& metered : all) {
         if (metered.picture.problem) continue;
         const Metering& m = metered.picture.metering;
-        std::string name = metered.frame ? std::to_string(*metered.frame) : metered.picture.path;
+        std::string name = metered.number ? std::to_string(*metered.number) : metered.picture.path;
         if (name.size() > width) name = "..." + name.substr(name.size() - width + 3);
         const Suggestion s = suggestion(m, rule, rule.method, options.metering.delta);
         fmt::print("{:<{}}{:>12.4g}{:>12.4g}{:>10.4g}{:>10.4g}{:>8.2f}{:>+10.3f}", name, width,
@@ -195,40 +163,14 @@ void print_table(const std::vector<Metered>& all, const MeterCommandOptions& opt
 }
 
 // ---------------------------------------------------------------------------------------------
-// For programs
 
-Json to_json(const Metered& metered, const MeterCommandOptions& options, const ExposureRule& rule) {
-    Json j = {{"file", metered.picture.path}};
-    if (metered.frame) j.add("frame", *metered.frame);
-    if (metered.picture.problem) {
-        j.add("error", render(*metered.picture.problem, command_style()));
-        return j;
-    }
-    const Json measured = tonewright::to_json(metered.picture.metering);
-    for (const auto& [name, value] : measured.members())
-        j.add(name, value);
-    Json suggested;
-    for (const NamedMethod& method : kMethods) {
-        const Suggestion s =
-            suggestion(metered.picture.metering, rule, method.method, options.metering.delta);
-        suggested.add(method.name,
-                      {{"luminance", s.luminance}, {"ev100", s.ev100}, {"exposure", s.stops}});
-    }
-    j.add("suggested", suggested);
-    j.add("exposure", suggested.at(options.metering.method).at("exposure"));
-    if (metered.adapted) j.add("adapted_exposure", *metered.adapted);
-    return j;
-}
-
-// ---------------------------------------------------------------------------------------------
-
-std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterRequest& request,
-                               const ExposureRule& rule) {
+std::vector<MeteredFrame> meter_all(const MeterCommandOptions& options, const MeterRequest& request,
+                                    const ExposureRule& rule) {
     const QuietStderr quiet;
-    std::vector<Metered> all;
     if (options.frames.empty()) {
+        std::vector<MeteredFrame> all;
         for (MeteredPicture& picture : meter_pictures(options.in, request))
-            all.push_back({std::move(picture), {}, {}});
+            all.push_back({std::move(picture)});
         return all;
     }
     if (options.in.size() != 1) {
@@ -239,15 +181,8 @@ std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterRe
     }
     const Adaptation adaptation = adaptation_of(options.shot);
     const MeteredShot shot = meter_shot(options.in.front(), parse_frames(options.frames), request);
-    std::map<int, double> adapted;
-    if (options.shot.adapt) adapted = shot.exposures(rule, options.metering.delta, &adaptation);
-    for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
-        const int number = shot.numbers[i];
-        all.push_back({shot.pictures[i], number, {}});
-        if (const auto found = adapted.find(number); found != adapted.end())
-            all.back().adapted = found->second;
-    }
-    return all;
+    return frames_of(shot, rule, options.metering.delta,
+                     options.shot.adapt ? &adaptation : nullptr);
 }
 
 /// Prints messages about the header of a single picture. Frames of a shot have the same ones, and
@@ -259,7 +194,7 @@ void tell_header(const std::string& path, const MeterCommandOptions& options) {
     {
         const QuietStderr quiet;
         const PictureReader reader(path, 1, read);
-        report_header(reader.spec(), options.input, read);
+        report_header(reader.spec(), options.light.input, read);
     }
     messages.print();
 }
@@ -271,20 +206,16 @@ int run_meter(const MeterCommandOptions& options) {
     use_threads(options.picture);
     const ExposureRule rule = rule_of(options.metering);
     const MeterRequest request = {
-        .options = meter_options_of(options.metering,
-                                    {options.input, options.input_units, options.reference_white},
-                                    options.picture),
+        .options = meter_options_of(options.metering, options.light, options.picture),
         .cache = options.shot.cache,
         .work = {options.picture.threads, options.picture.timeout}};
-    const std::vector<Metered> all = meter_all(options, request, rule);
+    const std::vector<MeteredFrame> all = meter_all(options, request, rule);
     if (options.json) {
         Json pictures = Json::array();
-        for (const Metered& metered : all)
-            pictures.push_back(to_json(metered, options, rule));
-        fmt::print(
-            "{}\n",
-            Json{{"options", tonewright::to_json(request.options)}, {"pictures", pictures}}.dump(
-                2));
+        for (const MeteredFrame& metered : all)
+            pictures.push_back(to_json(metered, rule, options.metering.delta, command_style()));
+        fmt::print("{}\n",
+                   Json{{"options", to_json(request.options)}, {"pictures", pictures}}.dump(2));
     } else if (all.size() > 1) {
         print_table(all, options, rule);
     } else if (!all.front().picture.problem) {
@@ -292,7 +223,7 @@ int run_meter(const MeterCommandOptions& options) {
     }
     if (all.size() == 1 && !all.front().picture.problem)
         tell_header(all.front().picture.path, options);
-    for (const Metered& metered : all) {
+    for (const MeteredFrame& metered : all) {
         const MeteredPicture& picture = metered.picture;
         if (const std::string text = histogram_warning(picture); !text.empty()) warn(text);
         if (!picture.problem) continue;

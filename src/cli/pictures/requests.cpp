@@ -97,12 +97,12 @@ static_assert(ExposureOptions{}.delta == kMeterDelta &&
               ShotOptions{}.fps == Adaptation{}.fps);
 #endif
 
-MeterOptions meter_options_of(const ExposureOptions& options, const MeteredInput& input,
+MeterOptions meter_options_of(const ExposureOptions& options, const LightOptions& light,
                               const PictureInput& picture) {
     MeterOptions o;
-    o.input = input.space;
-    o.input_units = parse_input_units(input.units);
-    o.reference_white = input.reference_white;
+    o.input = light.input;
+    o.input_units = parse_input_units(light.units);
+    o.reference_white = light.reference_white;
     o.read = read_options_of(picture);
     o.unpremult = alpha_of(picture);
     if (!options.region.empty()) o.region = parse_region(options.region);

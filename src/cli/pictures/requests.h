@@ -21,15 +21,9 @@ void use_threads(const PictureInput& input);
 /// @throws Error  --resize is a size that no picture can have
 void check_resize(const char* command, const std::string& resize, const PictureChoice& choice);
 
-/// The meaning of a picture's numbers. @see TonemapOptions
-struct MeteredInput {
-    std::string space;
-    std::string units;
-    double reference_white;
-};
 /// @throws Error
 [[nodiscard]] MeterOptions meter_options_of(const ExposureOptions& options,
-                                            const MeteredInput& input, const PictureInput& picture);
+                                            const LightOptions& light, const PictureInput& picture);
 /// @throws Error
 [[nodiscard]] ExposureRule rule_of(const ExposureOptions& options);
 /// @throws Error

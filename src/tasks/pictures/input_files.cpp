@@ -79,6 +79,28 @@ std::vector<std::string> names_of_list(const std::string& path) {
     return names;
 }
 
+std::pair<std::vector<std::string>, bool> expanded_inputs(const std::vector<std::string>& names,
+                                                          bool takes_folders) {
+    std::vector<std::string> inputs;
+    bool has_many = false;
+    for (const std::string& name : names) {
+        std::vector<std::string> expanded = {name};
+        const bool is_list = name.size() > 1 && name.front() == '@';
+        if (is_list) expanded = names_of_list(name.substr(1));
+        has_many = has_many || is_list;
+        for (const std::string& entry : expanded) {
+            if (takes_folders && is_folder(entry)) {
+                const std::vector<std::string> pictures = pictures_of_folder(entry);
+                inputs.insert(inputs.end(), pictures.begin(), pictures.end());
+                has_many = true;
+            } else {
+                inputs.push_back(entry);
+            }
+        }
+    }
+    return {inputs, has_many};
+}
+
 std::vector<FrameFiles> files_into_folder(const std::vector<std::string>& pictures,
                                           const std::string& folder, const std::string& format) {
     std::map<std::string, std::string> input_of;

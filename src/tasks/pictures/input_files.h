@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tonewright/sequence.h"
@@ -18,6 +19,13 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// The names in a text file: one a line. Empty lines and those that begin with `#` are left out.
 /// @throws FileError  the file cannot be read, or has no names
 [[nodiscard]] std::vector<std::string> names_of_list(const std::string& path);
+
+/// The pictures of folders and of lists: `@FILE` stands for the names in that file.
+/// @param takes_folders  false: the name of a folder stays as it is
+/// @returns  and whether there is a folder or a list
+/// @throws FileError  @see pictures_of_folder, names_of_list
+[[nodiscard]] std::pair<std::vector<std::string>, bool> expanded_inputs(
+    const std::vector<std::string>& names, bool takes_folders);
 
 /// Pictures and their results in a folder, with the names of the pictures.
 /// @param format   extension of the results, such as `png`; empty: those of the pictures

@@ -155,6 +155,47 @@ std::map<int, double> MeteredShot::exposures(const ExposureRule& rule, double de
     return exposures;
 }
 
+std::vector<MeteredFrame> frames_of(const MeteredShot& shot, const ExposureRule& rule, double delta,
+                                    const Adaptation* adaptation) {
+    std::map<int, double> adapted;
+    if (adaptation) adapted = shot.exposures(rule, delta, adaptation);
+    std::vector<MeteredFrame> frames;
+    for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
+        frames.push_back({shot.pictures[i], shot.numbers[i]});
+        if (const auto found = adapted.find(shot.numbers[i]); found != adapted.end())
+            frames.back().adapted = found->second;
+    }
+    return frames;
+}
+
+Json to_json(const MeteredFrame& metered, const ExposureRule& rule, double delta,
+             const MessageStyle& style) {
+    const MeteredPicture& picture = metered.picture;
+    Json j = {{"file", picture.path}};
+    if (metered.number) j.add("frame", *metered.number);
+    if (picture.problem) {
+        j.add("error", render(*picture.problem, style));
+        return j;
+    }
+    const Json measured = to_json(picture.metering);
+    for (const auto& [name, value] : measured.members())
+        j.add(name, value);
+    Json suggested;
+    double chosen = 0;
+    for (const MeterMethodNames& method : kMeterMethods) {
+        ExposureRule other = rule;
+        other.method = method.method;
+        const Suggestion s = suggest_exposure(picture.metering, other, delta);
+        suggested.add(method.name,
+                      {{"luminance", s.luminance}, {"ev100", s.ev100}, {"exposure", s.stops}});
+        if (method.method == rule.method) chosen = s.stops;
+    }
+    j.add("suggested", suggested);
+    j.add("exposure", chosen);
+    if (metered.adapted) j.add("adapted_exposure", *metered.adapted);
+    return j;
+}
+
 std::vector<MeteredPicture> meter_files(std::vector<FrameFiles>& files,
                                         const ExposureRequest& request) {
     std::vector<std::string> paths;

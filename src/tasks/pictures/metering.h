@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tasks/json.h"
 #include "tasks/listener.h"
 #include "tasks/pictures/contained.h"
 #include "tasks/pictures/frames.h"
@@ -67,6 +69,34 @@ struct MeteredShot {
     [[nodiscard]] std::map<int, double> exposures(const ExposureRule& rule, double delta,
                                                   const Adaptation* adaptation) const;
 };
+
+/// A metered picture, or a metered frame of a shot.
+struct MeteredFrame {
+    MeteredPicture picture;
+    std::optional<int> number = {};
+    std::optional<double> adapted = {};  // stops
+};
+/// @param adaptation  null: the frames have no adapted exposures
+/// @throws Error  the problem of a picture that the adaptation needs
+[[nodiscard]] std::vector<MeteredFrame> frames_of(const MeteredShot& shot, const ExposureRule& rule,
+                                                  double delta, const Adaptation* adaptation);
+
+/// Names of a metering method: that of parse_meter_method(), and in words.
+struct MeterMethodNames {
+    ExposureRule::Method method;
+    const char* name;
+    const char* title;
+};
+inline constexpr std::array<MeterMethodNames, 4> kMeterMethods = {
+    {{ExposureRule::Method::log_average, "log-average", "log average"},
+     {ExposureRule::Method::histogram, "histogram", "histogram"},
+     {ExposureRule::Method::mean, "mean", "mean"},
+     {ExposureRule::Method::maximum, "max", "maximum"}}};
+
+/// All figures, with the exposures that all methods suggest; or the problem.
+/// @param style  of the parameters that the problem names
+[[nodiscard]] Json to_json(const MeteredFrame& metered, const ExposureRule& rule, double delta,
+                           const MessageStyle& style);
 
 /// @param frames  any order; of `pattern`
 [[nodiscard]] MeteredShot meter_shot(const std::string& pattern, std::vector<int> frames,

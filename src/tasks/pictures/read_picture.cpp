@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -79,6 +81,50 @@ PictureInfo read_picture_info(const std::string& path, ReadOptions read, const s
     });
     info.said.ignored.insert(info.said.ignored.begin(), warnings.begin(), warnings.end());
     return info;
+}
+
+std::string primaries_text(const Primaries& p) {
+    for (const InputSpace& space : all_input_spaces()) {
+        if (space.primaries == p) return std::string(p.name);
+    }
+    std::vector<std::string> numbers;
+    for (const Chromaticity& c : {p.red, p.green, p.blue})
+        numbers.push_back(fmt::format("{:.4f} {:.4f}", c.x, c.y));
+    return fmt::format("red {}, green {}, blue {}", numbers[0], numbers[1], numbers[2]);
+}
+
+std::string white_text(const Chromaticity& white) {
+    constexpr std::array<std::pair<const char*, Chromaticity>, 3> kWhites = {
+        {{"D65", kD65}, {"D60 (ACES)", kAP0.whitepoint}, {"E", {1.0 / 3, 1.0 / 3}}}};
+    for (const auto& [name, known] : kWhites) {
+        constexpr double kSame = 5e-5;
+        if (std::fabs(known.x - white.x) < kSame && std::fabs(known.y - white.y) < kSame)
+            return name;
+    }
+    return fmt::format("{:.4f} {:.4f}", white.x, white.y);
+}
+
+Json to_json(const std::string& path, const PictureInfo& info) {
+    const auto& [spec, said, choices] = info;
+    const Primaries& p = said.color.primaries;
+    Json primaries = Json::array({p.red.x, p.red.y, p.green.x, p.green.y, p.blue.x, p.blue.y});
+    return {{"file", path},
+            {"width", spec.width},
+            {"height", spec.height},
+            {"channels", spec.nchannels},
+            {"type", std::string(spec.format.c_str())},
+            {"space", said.color.name},
+            {"transfer", said.transfer},
+            {"primaries", primaries},
+            {"white", Json::array({p.whitepoint.x, p.whitepoint.y})},
+            {"orientation", said.orientation},
+            {"layer", said.layer},
+            {"subimage", said.subimage},
+            {"units", said.units},
+            {"alpha", said.alpha},
+            {"rule", said.rule},
+            {"ignored", said.ignored},
+            {"choices", choices}};
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "image/picture_description.h"
+#include "tasks/json.h"
 #include "tonewright/image_io.h"
 #include "tonewright/tonemap.h"
 
@@ -43,5 +44,11 @@ struct PictureInfo {
 /// @throws FileError  @see read_image
 [[nodiscard]] PictureInfo read_picture_info(const std::string& path, ReadOptions read,
                                             const std::string& input);
+/// "Rec.709", or the coordinates.
+[[nodiscard]] std::string primaries_text(const Primaries& p);
+/// "D65", or the coordinates.
+[[nodiscard]] std::string white_text(const Chromaticity& white);
+/// @param path  of the picture
+[[nodiscard]] Json to_json(const std::string& path, const PictureInfo& info);
 
 TONEWRIGHT_NAMESPACE_END

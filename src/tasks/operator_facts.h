@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is known about an operator, as text: for lists and for documents.
+// Facts about an operator as text, for lists and documents.
 #pragma once
 
 #include <string>

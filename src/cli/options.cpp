@@ -9,11 +9,9 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <system_error>
 #include <type_traits>
-#include <utility>
 
 #include "base/strings.h"
 #include "cli/help_text.h"
@@ -29,7 +27,9 @@ template <class Value>
 constexpr bool kIsText =
     std::is_same_v<Value, std::string> || std::is_same_v<Value, std::vector<std::string>>;
 template <class Value>
-constexpr bool kIsWhole = std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>;
+using NumberOf =
+    std::conditional_t<std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>, int,
+                       double>;
 
 std::vector<const CLI::App*> subcommands(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App*) { return true; });
@@ -105,6 +105,16 @@ Error missing_value(const CLI::App& command, const CLI::Option& option) {
 
 bool is_option(const CLI::App& command, const std::string& text) {
     return text.size() > 1 && text.front() == '-' && command.get_option_no_throw(text) != nullptr;
+}
+
+/// Makes a number a plain decimal. Throws an Error if the text is no value of the option.
+template <class Value>
+void check_value(const CLI::App& app, const CLI::Option& option,
+                 const std::optional<std::pair<double, double>>& range, std::string& text) {
+    // CLI11 takes the next word as the value, even an option.
+    if (!option.get_positional() && is_option(app, text)) throw missing_value(app, option);
+    if constexpr (!kIsText<Value>)
+        text = checked_number<NumberOf<Value>>(subject_of(app, option), text, range);
 }
 
 /// CLI11's commands as help pages.
@@ -224,12 +234,7 @@ void Command::add(const std::string& names, const std::string& value, OptionVari
     const auto add_to = [&]<class Value>(Value* target) {
         CLI::Option* option = app_->add_option(names, *target, help);
         const auto check = [app = app_, option, range = facts.range](std::string& text) {
-            // CLI11 takes the next word as the value, even an option.
-            if (!option->get_positional() && is_option(*app, text))
-                throw missing_value(*app, *option);
-            using Number = std::conditional_t<kIsWhole<Value>, int, double>;
-            if constexpr (!kIsText<Value>)
-                text = checked_number<Number>(subject_of(*app, *option), text, range);
+            check_value<Value>(*app, *option, range, text);
             return std::string();
         };
         option->transform(CLI::Validator(check, {}));

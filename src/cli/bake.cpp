@@ -176,9 +176,7 @@ void add_bake(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command =
         program.add("bake", "LUTs, shaders and configs", "Write an operator as a LUT file.");
-    command.argument("operator", &options->op,
-                     "operator, operator:preset, .tone file, LUT or formula",
-                     {.suggest = suggest_operators});
+    add_operator_argument(command, options->op);
     command.title("Output");
     command.add("-o", "FILE", &options->file, "file to write");
     command.add(

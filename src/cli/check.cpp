@@ -8,7 +8,6 @@
 #include "cli/messages.h"
 #include "cli/plot.h"
 #include "cli/shared_options.h"
-#include "cli/suggestions.h"
 #include "measure/laws.h"
 #include "plot/gray_curve.h"
 #include "plot/terminal_plot.h"
@@ -77,9 +76,7 @@ void add_check(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command =
         program.add("check", "Checks", "Check an operator against the laws of tone curves.");
-    command.argument("operator", &options->op,
-                     "operator, operator:preset, .tone file, LUT or formula",
-                     {.suggest = suggest_operators, .is_required = true});
+    add_operator_argument(command, options->op, true);
     add_operator_options(command, *options);
     command.title("LUT as the operator");
     add_lut_input_options(command, options->lut);

@@ -151,9 +151,7 @@ void add_eval(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command =
         program.add("eval", "Operators", "Tone map RGB triplets from standard input, one a line.");
-    command.argument("operator", &options->op,
-                     "operator, operator:preset, .tone file, LUT or formula",
-                     {.suggest = suggest_operators});
+    add_operator_argument(command, options->op);
     add_view_options(command, *options);
     command.describe("--input", "color space of the input (`tonewright list --inputs`)",
                      suggest_input_colors);

@@ -159,9 +159,7 @@ void add_shader(CommandLine& program) {
     options->display = kLinearOutput;
     const Command command =
         program.add("shader", "LUTs, shaders and configs", "Write an operator as shader source.");
-    command.argument("operator", &options->op,
-                     "operator, operator:preset, .tone file, LUT or formula",
-                     {.suggest = suggest_operators});
+    add_operator_argument(command, options->op);
     command.title("Output");
     command.add("--language", "NAME", &options->language,
                 "shader language; see --list (default: by the extension)",

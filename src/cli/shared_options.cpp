@@ -4,6 +4,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+void add_operator_argument(const Command& command, std::string& op, bool is_required) {
+    command.argument("operator", &op, "operator, operator:preset, .tone file, LUT or formula",
+                     {.suggest = suggest_operators, .is_required = is_required});
+}
+
 void add_operator_options(const Command& command, ViewOptions& options) {
     command.title("Operator");
     command.add("--set", "NAME=VALUE", &options.set, "operator parameter; repeat for more",

@@ -13,6 +13,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// OPERATOR, of any kind.
+void add_operator_argument(const Command& command, std::string& op, bool is_required = false);
+
 /// --set, --look, under a title of their own.
 void add_operator_options(const Command& command, ViewOptions& options);
 

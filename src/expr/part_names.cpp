@@ -16,10 +16,18 @@ std::shared_ptr<const PartNameList> joined(const std::shared_ptr<const PartNameL
 
 Expr named(const char* name, const Expr& part) {
     if (part.operand_count() == 0 && !part.is_constant()) return part;
+    const auto& before = part.names_;
+    if (before && !before->entries.empty() && same(before->entries.back().part, part)) {
+        // A list inside of each list would be as deep as a formula is long.
+        if (part.is_constant()) return part;
+        PartNameList renamed = *before;
+        renamed.entries.back().name = name;
+        return Expr(part.node_, std::make_shared<const PartNameList>(std::move(renamed)));
+    }
     PartNames own;
     own.add(name, part);
     return Expr(part.node_, std::make_shared<const PartNameList>(
-                                PartNameList{part.names_, nullptr, std::move(own.all_)}));
+                                PartNameList{before, nullptr, std::move(own.all_)}));
 }
 
 PartNames::PartNames(Span<const Expr> exprs) {

@@ -49,7 +49,6 @@ std::string help_of(const ParameterSpec& p) {
     return p.from_display ? p.help + "; where it is not set, <<display>> decides" : p.help;
 }
 
-/// "AgX; others: agx_minimal, agx_sobotka".
 std::string dialects_of(const Operator& op) {
     std::string ids;
     for (const Operator& other : all_operators()) {

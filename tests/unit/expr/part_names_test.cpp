@@ -69,5 +69,18 @@ TEST(PartNames, AreAsManyAsThePartsHoweverOftenTheyAreUsed) {
     EXPECT_EQ(PartNames(std::array{sum}).all().size(), 2000U) << "nothing is left of earlier ones";
 }
 
+// A formula may name one part a hundred thousand times; a list inside of each list would take the
+// stack of a thread.
+TEST(PartNames, OnePartOfManyNamesHasOneEntry) {
+    Expr part = Expr::input() * 3;
+    Expr number = 0.5;
+    for (int i = 0; i < 1000000; ++i) {
+        part = named("other", part);
+        number = named(i == 0 ? "first" : "other", number);
+    }
+    part = named("last", part);
+    EXPECT_EQ(names_of(part + number), "last first");
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

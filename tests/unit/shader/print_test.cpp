@@ -48,7 +48,8 @@ std::string text_of(const ShaderRequest& request) {
 }
 
 // Names as the sources have them: H. Uchimura, CEDEC 2017, slides 130-150; the Khronos PBR Neutral
-// specification; S. Wrensch, "Minimal AgX Implementation" and ACESlib.RRT_Common of ACES 1.3.
+// specification; S. Wrensch, "Minimal AgX Implementation"; ACESlib.RRT_Common and
+// LMT.Academy.ReferenceGamutCompress of ACES 1.3.
 TEST(Shader, PartsHaveTheNamesOfTheirSources) {
     const std::map<std::string, std::vector<std::string>> sources = {
         {"uchimura", {"S0 = 0.532", "C2 = ", "w0 = ", "bool w2 = ", "w1 = ", "toe = "}},
@@ -56,7 +57,9 @@ TEST(Shader, PartsHaveTheNamesOfTheirSources) {
         {"agx_minimal", {"n = ", "n2 = n * n", "n4 = n2 * n2"}},
         {"aces_13", {"saturation = ", "yc = ", "hue = "}},
         {"somewhat_boring", {"luma = ", "cb = ", "cr = ", "by_channel_r = ", "by_channel_b = "}},
-        {"reinhard_jodie", {"luminance = ", "t_r = ", "t_g = ", "t_b = "}}};
+        {"reinhard_jodie", {"luminance = ", "t_r = ", "t_g = ", "t_b = "}},
+        // A later stage has the same part under the name `largest`.
+        {"aces_13:gamut_compressed", {"achromatic = "}}};
     for (const auto& [op, names] : sources) {
         const std::string text = text_of(request_of(op));
         for (const std::string& name : names)

@@ -114,9 +114,8 @@ std::string grade_of(double error) {
 }
 
 /// The command line that writes the file, with the user's own options.
-std::string command_of(const ExactFile& file, const ResolvedOperator& op,
-                       const LutApplication& host, const Options& options) {
-    std::string name = file.is_formula ? op.op->id + ":formula" : options.op;
+std::string command_of(const ExactFile& file, const LutApplication& host, const Options& options) {
+    std::string name = options.op;
     std::string text = fmt::format("tonewright {} {}", file.is_shader ? "shader" : "bake", name);
     for (const std::string& setting : options.set)
         text += " --set " + setting;
@@ -136,7 +135,7 @@ void print_exact_files(const Options& options) {
         "{}: files for applications; 99.9 % of photographs are within this many codes of "
         "255 (exact: less than 0.01; near: at most 0.5)\n",
         options.op);
-    ExactFiles files(request, options.settings());
+    ExactFiles files(request);
     for (const LutApplication& host : all_lut_applications()) {
         if (request.application && request.application != &host) continue;
         fmt::print("\n  {}: {}\n", host.id, host.title);
@@ -146,7 +145,7 @@ void print_exact_files(const Options& options) {
         }();
         for (const ExactFile& file : found) {
             fmt::print("    {:<5}  {}\n           {}\n", grade_of(file.error), file.title,
-                       command_of(file, request.op, host, options));
+                       command_of(file, host, options));
         }
     }
 }

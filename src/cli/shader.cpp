@@ -46,9 +46,10 @@ ShaderCurves curves_of(const Options& options) {
 }
 
 ShaderTables tables_of(const Options& options) {
-    return options.tables == "texture" ? ShaderTables::texture
-           : options.tables == "array" ? ShaderTables::array
-                                       : ShaderTables::by_size;
+    return options.tables == "texture"   ? ShaderTables::texture
+           : options.tables == "array"   ? ShaderTables::array
+           : options.tables == "formula" ? ShaderTables::formula
+                                         : ShaderTables::by_size;
 }
 
 /// The language of --language, else of the file's extension.
@@ -98,14 +99,14 @@ void write_one(Options& options) {
     request.tables = tables_of(options);
     request.curves = curves_of(options);
     request.cache_folder = user_cache_folder();
-    const auto& [shader, is_double, textures] =
+    const auto& [shader, is_double, beside] =
         write_shader_files(request, options.file, {.warn = warn});
     if (options.file.empty()) {
         fmt::print("{}", shader.text);
         return;
     }
-    for (const std::string& path : textures)
-        print_result(path + ": its texture");
+    for (const std::string& path : beside)
+        print_result(path + ": its 3D LUT");
     print_result(
         is_double
             ? fmt::format("{}: {}(), the reference in 64-bit float", options.file, shader.function)
@@ -133,12 +134,6 @@ void write_all(const Options& options) {
     request.exposure_stops = options.exposure;
     request.display = options.display;
     const ShaderSetResult result = write_shader_set(request);
-    for (const auto& [language, grids] : result.left_out) {
-        print_result(
-            fmt::format("{}: {} without a shader, because they read grids, which it "
-                        "cannot hold",
-                        language, grids));
-    }
     print_result(fmt::format("{}: {} shaders", options.all, result.count));
 }
 
@@ -176,9 +171,9 @@ void add_shader(CommandLine& program) {
                 {.suggest = suggest_uniforms, .takes_one_each = true, .separator = ','});
     command.add(
         "--tables", "KIND", &options->tables,
-        "store tables and 3D LUTs as `array` in the text or `texture` in a file (default: by "
-        "size)",
-        {.choices = {"texture", "array"}});
+        "tables and 3D LUTs as `array` or `texture`, or nodes of 3D LUTs by their `formula` "
+        "(default: by size and application)",
+        {.choices = {"texture", "array", "formula"}});
     command.add("--curves", "KIND", &options->curves,
                 "curves of one number as `formula`, or `fitted` polynomials where these are faster",
                 {.choices = {"formula", "fitted"}});

@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "base/strings.h"
-#include "lut/half_value.h"
+#include "base/half_value.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lut/half_value.h"
+#include "base/half_value.h"
 #include "tonewright/expr.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

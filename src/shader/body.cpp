@@ -291,8 +291,9 @@ std::string FunctionBody::grid_channel(const Expr& e) {
     std::string color;
     for (int i = 0; i < 3; ++i)
         color += (i ? ", " : "") + operand(e.operand(i), kAny);
-    const std::string call =
-        fmt::format("{}({}({}))", tables_.at(e.grid().get()).function, language_.make_color, color);
+    const TableText& grid = tables_.at(e.grid().get());
+    const std::string call = fmt::format("{}({}({}){}{})", grid.function, language_.make_color,
+                                         color, grid.texture.empty() ? "" : ", ", grid.texture);
     std::string& name = grid_colors_[call];
     if (name.empty()) {
         name = unique("node");

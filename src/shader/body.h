@@ -18,6 +18,8 @@ struct TableText {
     /// For a table of cells: the function that finds the cell of a number. Tables with the same
     /// positions share it, and `function` is a pattern with {cell}.
     std::string cell_function = {};
+    /// The texture that the function takes after the color; empty: none.
+    std::string texture = {};
 };
 
 /// Prints expressions as the body of a function. Expressions that are read twice, or are too long

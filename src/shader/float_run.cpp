@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -33,7 +34,7 @@ float look_up(const Table& table, float x) {
     return at(lo) + std::min(std::max(t, 0.0F), 1.0F) * (at(lo + 1) - at(lo));
 }
 
-float operation(const TapeInstruction& step, float a, float b, float c) {
+float operation(const TapeInstruction& step, const Grid* grid, float a, float b, float c) {
     switch (step.op) {
         case ExprOp::constant:
             return static_cast<float>(step.value);
@@ -80,8 +81,8 @@ float operation(const TapeInstruction& step, float a, float b, float c) {
         case ExprOp::lookup:
             return look_up(*step.table, a);
         case ExprOp::grid:
-            return static_cast<float>((*step.grid)(step.input, static_cast<double>(a),
-                                                   static_cast<double>(b), static_cast<double>(c)));
+            return static_cast<float>((*grid)(step.input, static_cast<double>(a),
+                                              static_cast<double>(b), static_cast<double>(c)));
         case ExprOp::input:
         case ExprOp::uniform:
             break;
@@ -91,7 +92,8 @@ float operation(const TapeInstruction& step, float a, float b, float c) {
 
 }  // namespace
 
-FloatRun::FloatRun(const ShaderProgram& program) : tape_(compose(program)) {}
+FloatRun::FloatRun(const ShaderProgram& program, GridsInText grids)
+    : tape_(compose(program)), grids_(std::move(grids)) {}
 
 void FloatRun::run_rgb(const float* in, float* out, std::size_t pixel_count) const {
     const std::vector<TapeInstruction>& code = tape_.code();
@@ -102,11 +104,13 @@ void FloatRun::run_rgb(const float* in, float* out, std::size_t pixel_count) con
         const std::size_t count = std::min(kBlock, pixel_count - done);
         for (std::size_t i = 0; i < code.size(); ++i) {
             const TapeInstruction& step = code[i];
+            const auto replaced = grids_.find(step.grid);
+            const Grid* const grid = replaced == grids_.end() ? step.grid : replaced->second.get();
             for (std::size_t k = 0; k < count; ++k) {
-                value[i][k] =
-                    step.op == ExprOp::input
-                        ? in[3 * (done + k) + static_cast<std::size_t>(step.input)]
-                        : operation(step, value[step.a][k], value[step.b][k], value[step.c][k]);
+                value[i][k] = step.op == ExprOp::input
+                                  ? in[3 * (done + k) + static_cast<std::size_t>(step.input)]
+                                  : operation(step, grid, value[step.a][k], value[step.b][k],
+                                              value[step.c][k]);
             }
         }
         for (std::size_t k = 0; k < count; ++k) {

@@ -34,10 +34,17 @@ constexpr LanguageFacts kGlsl = {
     .to_number = "float({value})",
     .half = "({value}) / 2",
     .array = "const float {name}[{count}] = float[{count}](\n{values});",
-    .texture = "uniform highp sampler3D {name};",
+    .has_textures = true,
+    .prefers_formula = false,
+    .holds_halves = false,
+    .texel = "32-bit float",
+    .texture = "uniform highp sampler3D {name};\n",
+    .texture_parameter = "",
+    .first_binding = 0,
     .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0)",
     .color_of_fetch = ".rgb",
     .loader =
+        "// To load its file:\n"
         "// glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, {width}, {height}, {depth}, 0, GL_RGBA, "
         "GL_FLOAT, data);\n"
         "// GL_TEXTURE_MIN_FILTER and GL_TEXTURE_MAG_FILTER are GL_NEAREST.\n",
@@ -65,6 +72,7 @@ constexpr LanguageFacts glsl_es() {
     LanguageFacts f = kGlsl;
     f.language = ShaderLanguage::glsl_es;
     f.loader =
+        "// To load its file:\n"
         "// const data = new Float32Array(await (await fetch('{name}.rgba32f')).arrayBuffer());\n"
         "// gl.bindTexture(gl.TEXTURE_3D, gl.createTexture());\n"
         "// gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);\n"
@@ -83,9 +91,10 @@ constexpr LanguageFacts hlsl() {
     f.to_integer = "(int)({value})";
     f.to_number = "(float)({value})";
     f.array = "static const float {name}[{count}] = {{\n{values}}};";
-    f.texture = "Texture3D<float4> {name};";
+    f.texture = "Texture3D<float4> {name};\n";
     f.fetch = "{name}.Load(int4({x}, {y}, {z}, 0))";
     f.loader =
+        "// To load its file:\n"
         "// Direct3D: DXGI_FORMAT_R32G32B32A32_FLOAT, {pitch} bytes a row.\n"
         "// Unity: var t = new Texture3D({width}, {height}, {depth}, TextureFormat.RGBAFloat, "
         "false);\n"
@@ -112,9 +121,10 @@ constexpr LanguageFacts wgsl() {
     f.to_number = "f32({value})";
     // Not `const`, because older compilers refuse a variable index into a constant array.
     f.array = "var<private> {name}: array<f32, {count}> = array<f32, {count}>(\n{values});";
-    f.texture = "@group(0) @binding({binding}) var {name}: texture_3d<f32>;";
+    f.texture = "@group(0) @binding({binding}) var {name}: texture_3d<f32>;\n";
     f.fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0)";
     f.loader =
+        "// To load its file:\n"
         "// const data = new Float32Array(await (await fetch('{name}.rgba32f')).arrayBuffer());\n"
         "// const size = [{width}, {height}, {depth}];\n"
         "// const texture = device.createTexture({{ size, dimension: '3d', format: 'rgba32float',\n"
@@ -133,7 +143,7 @@ constexpr LanguageFacts msl() {
     f.before_function = "inline ";
     f.to_integer = "int({value})";
     f.to_number = "float({value})";
-    f.texture = "";
+    f.has_textures = false;
     f.array = "constant float {name}[{count}] = {{\n{values}}};";
     f.splat = "float3({value})";
     f.prologue = "#include <metal_stdlib>\nusing namespace metal;\n";
@@ -152,7 +162,7 @@ constexpr LanguageFacts c() {
     f.to_integer = "(int)({value})";
     f.to_number = "(float)({value})";
     f.array = "static const float {name}[{count}] = {{\n{values}}};";
-    f.texture = "";
+    f.has_textures = false;
     f.largest_array = std::numeric_limits<std::size_t>::max();
     f.has_color_math = false;
     f.product = "";
@@ -243,7 +253,7 @@ constexpr LanguageFacts osl() {
     f.array = "float {name}[{count}] = {{\n{values}}};";
     f.to_integer = "(int)({value})";
     f.to_number = "(float)({value})";
-    f.texture = "";
+    f.has_textures = false;
     f.has_local_arrays = true;
     f.splat = "color({value})";
     f.product = "";  // of vectors alone
@@ -269,10 +279,11 @@ constexpr LanguageFacts javascript() {
     f.half = "({value}) >> 1";
     f.array = "const {name} = [\n{values}];";
     f.texture =
-        "// Before the first call, make {name} a function of x, y, z that returns [r, g, b].";
+        "// Before the first call, make {name} a function of x, y, z that returns [r, g, b].\n";
     f.fetch = "{name}({x}, {y}, {z})";
     f.color_of_fetch = "";
     f.loader =
+        "// To load its file:\n"
         "// const data = new Float32Array(await (await fetch('{name}.rgba32f')).arrayBuffer());\n"
         "// const {name} = (x, y, z) => {{\n"
         "//     const i = 4 * (x + {width} * (y + {height} * z));\n"

@@ -30,12 +30,19 @@ struct LanguageFacts {
     const char* to_number;   // {value}
     const char* half;        // of a whole {value}, rounded down
     const char* array;       // {name}, {count}, {values}
-    /// Declaration of a 3D texture with {name} and {binding}; empty if textures must be arguments.
+    bool has_textures;
+    bool prefers_formula;  // to textures of 3D LUTs
+    bool holds_halves;     // as texels of 3D LUTs
+    const char* texel;     // in words
+    /// Declaration of a 3D texture with {name} and {binding}.
     const char* texture;
+    /// Type and name of a texture as an argument; empty: functions read it without.
+    const char* texture_parameter;
+    std::size_t first_binding;
     const char* fetch;  // of a texture's {name} at {x}, {y}, {z}: a color, or more than that
     const char* color_of_fetch;  // after it
     /// Comments on how to create the texture from its file. {name}, {width}, {height}, {depth},
-    /// {pitch}.
+    /// {pitch}, {edge}.
     const char* loader;
     /// Largest array for a text of the language.
     std::size_t largest_array;

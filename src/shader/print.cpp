@@ -13,6 +13,7 @@
 #include "base/format_number.h"
 #include "expr/nodes.h"
 #include "shader/body.h"
+#include "shader/grid_form.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -79,7 +80,8 @@ class ProgramPrinter {
     }
     void end() { text_ += "}\n"; }
 
-    /// Uniforms that the expressions read, in the order of the program.
+    /// Uniforms that the expressions read, in the order of the program, and textures if these are
+    /// arguments.
     [[nodiscard]] std::vector<std::string> read_uniforms(std::span<const Expr> exprs) const {
         const std::vector<std::string> read = uniforms_of(exprs);
         std::vector<std::string> result;
@@ -87,13 +89,28 @@ class ProgramPrinter {
             if (std::find(read.begin(), read.end(), uniform) != read.end())
                 result.push_back(uniform);
         }
+        for (const Expr& e : nodes_of(exprs)) {
+            if (e.op() != ExprOp::grid) continue;
+            const std::string& texture = table_texts_.at(e.grid().get()).texture;
+            if (!texture.empty() &&
+                std::find(result.begin(), result.end(), texture) == result.end())
+                result.push_back(texture);
+        }
         return result;
     }
-    [[nodiscard]] std::vector<std::string> parameters(const char* type, const std::string& name,
-                                                      const std::vector<std::string>& uniforms) {
+    [[nodiscard]] bool is_texture_argument(const std::string& name) const {
+        return std::any_of(textures_.begin(), textures_.end(),
+                           [&](const ShaderTexture& texture) { return texture.name == name; });
+    }
+    [[nodiscard]] std::vector<std::string> parameters(
+        const char* type, const std::string& name, const std::vector<std::string>& uniforms) const {
         std::vector<std::string> result = {declared(type, name)};
-        for (const std::string& uniform : uniforms)
-            result.push_back(declared(language_.number, uniform));
+        for (const std::string& uniform : uniforms) {
+            result.push_back(is_texture_argument(uniform)
+                                 ? fmt::format(fmt::runtime(language_.texture_parameter),
+                                               fmt::arg("name", uniform))
+                                 : declared(language_.number, uniform));
+        }
         return result;
     }
     static std::string call(const std::string& name, const std::string& argument,
@@ -187,12 +204,15 @@ class ProgramPrinter {
         return fmt::format("{}({}({}, {}), {})", language_.minimum, language_.maximum, x, lo, hi);
     }
 
+    /// True for a 1D table that becomes a texture. `formula` is about nodes of 3D LUTs alone.
     /// @throws Error  if neither an array nor a texture can hold that many
     [[nodiscard]] bool is_texture(const std::string& what, std::size_t numbers) const {
-        const bool has_texture = *language_.texture != 0;
+        // A texture of half floats is for 3D LUTs.
+        const bool has_texture = language_.has_textures && !language_.holds_halves;
         const bool is_small = numbers <= language_.largest_array;
-        const bool result =
-            tables_ == ShaderTables::by_size ? !is_small : tables_ == ShaderTables::texture;
+        const bool result = tables_ == ShaderTables::by_size || tables_ == ShaderTables::formula
+                                ? !is_small
+                                : tables_ == ShaderTables::texture;
         if (result ? has_texture : is_small) return result;
         const std::string& id = std::find_if(shader_languages().begin(), shader_languages().end(),
                                              [&](const ShaderLanguageInfo& info) {
@@ -218,14 +238,14 @@ class ProgramPrinter {
     ShaderTexture& declare_texture(const std::string& name, const std::array<int, 3>& size) {
         const auto filled = [&](const char* pattern) {
             return fmt::format(fmt::runtime(pattern), fmt::arg("name", name),
-                               fmt::arg("binding", textures_.size()), fmt::arg("width", size[0]),
-                               fmt::arg("height", size[1]), fmt::arg("depth", size[2]),
+                               fmt::arg("binding", language_.first_binding + textures_.size()),
+                               fmt::arg("width", size[0]), fmt::arg("height", size[1]),
+                               fmt::arg("depth", size[2]), fmt::arg("edge", size[0]),
                                fmt::arg("pitch", 16 * size[0]));
         };
-        text_ +=
-            fmt::format("\n// {}: {} texels, RGBA, 32-bit float, no filter. To load its file:\n",
-                        name, fmt::join(size, " x ")) +
-            filled(language_.loader) + filled(language_.texture) + "\n";
+        text_ += fmt::format("\n// {}: {} texels, RGBA, {}, no filter.\n", name,
+                             fmt::join(size, " x "), language_.texel) +
+                 filled(language_.loader) + filled(language_.texture);
         return textures_.emplace_back(ShaderTexture{name, size, {}});
     }
 
@@ -365,7 +385,7 @@ class ProgramPrinter {
     }
 
     /// Prints a function of a color with this name from the expressions.
-    void print_formula(const std::string& name, const std::vector<Expr>& f) {
+    void print_formula(const std::string& name, Span<const Expr> f) {
         const std::array<std::string, 3> c = channels_of("c");
         FunctionBody body(language_, {c.begin(), c.end()}, {"c"}, {}, {});
         std::array<std::string, 3> out;
@@ -373,19 +393,33 @@ class ProgramPrinter {
             body.count(e);
         for (std::size_t i = 0; i < 3; ++i)
             out[i] = body.value(f[i]);
-        text_ +=
-            "\n// Computes a node of the texture: [z/(depth - 1), y/(height - 1), x/(width - 1)].";
+        text_ += "\n// Computes a node of the 3D LUT from its place in [0, 1] on each axis.";
         begin(language_.color, name, {declared(language_.color, "c")});
         text_ += body.lines();
         line("return " + made_on_lines(out) + ";");
         end();
     }
 
-    /// Text that reads a node of the Grid: from an array, or from a texture.
+    /// Text that gives a node of the Grid: from an array, from a texture or computed.
     std::string print_nodes(const std::string& name, const Grid& grid) {
-        const std::vector<double>& numbers = grid.nodes();
         const std::string nodes = name + "_nodes";
-        if (!is_texture(fmt::format("a 3D LUT of {}^3 colors", grid.edge()), numbers.size())) {
+        const GridSource source = grid_source(grid, language_, tables_, name_);
+        if (source == GridSource::formula) {
+            const std::string formula = name + "_formula";
+            print_formula(formula, node_formula(grid));
+            const std::string node = name + "_node";
+            begin(language_.color, node,
+                  {declared(language_.integer, "r"), declared(language_.integer, "g"),
+                   declared(language_.integer, "b")});
+            const auto place = [&](const char* axis) {
+                return to_number(axis) + " / " + literal(grid.edge() - 1);
+            };
+            line("return " + formula + "(" + made({place("r"), place("g"), place("b")}) + ");");
+            end();
+            return node + "({r}, {g}, {b})";
+        }
+        const std::vector<double>& numbers = grid.nodes();
+        if (source == GridSource::array) {
             const std::string values = array(nodes, numbers);
             if (!language_.has_local_arrays) text_ += "\n" + values;
             const std::string node = name + "_node";
@@ -410,11 +444,13 @@ class ProgramPrinter {
         }
         // The third coordinate runs fastest.
         return fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", nodes),
-                           fmt::arg("x", "{b}"), fmt::arg("y", "{g}"), fmt::arg("z", "{r}")) +
+                           fmt::arg("x", "{b}"), fmt::arg("y", "{g}"), fmt::arg("z", "{r}"),
+                           fmt::arg("edge", grid.edge()), fmt::arg("last", grid.edge() - 1)) +
                language_.color_of_fetch;
     }
 
     void print_grid(const std::string& name, const Grid& grid) {
+        const std::size_t had = textures_.size();
         const std::string fetch = print_nodes(name, grid);
         const auto node = [&](const char* r, const char* g, const char* b) {
             return fmt::format(fmt::runtime(fetch), fmt::arg("r", r), fmt::arg("g", g),
@@ -428,7 +464,12 @@ class ProgramPrinter {
         };
         const std::string min = language_.minimum;
         const std::string max = language_.maximum;
-        begin(language_.color, name, {declared(language_.color, "c")});
+        TableText& text = table_texts_[&grid];
+        const bool is_argument = *language_.texture_parameter && textures_.size() > had;
+        if (is_argument) text.texture = textures_.back().name;
+        std::vector<std::string> arguments;
+        if (!text.texture.empty()) arguments = {text.texture};
+        begin(language_.color, name, parameters(language_.color, "c", arguments));
         line("// Between the nodes of a tetrahedron along the gray diagonal.");
         for (std::size_t i = 0; i < 3; ++i) {
             const std::string channel(1, "rgb"[i]);
@@ -593,11 +634,17 @@ class ProgramPrinter {
 
     void print_entry() {
         switch (language_.entry) {
-            case LanguageFacts::Entry::function:
-                begin(language_.color, name_, parameters(language_.color, "scene", uniforms_));
+            case LanguageFacts::Entry::function: {
+                std::vector<std::string> arguments = uniforms_;
+                if (*language_.texture_parameter) {
+                    for (const ShaderTexture& texture : textures_)
+                        arguments.push_back(texture.name);
+                }
+                begin(language_.color, name_, parameters(language_.color, "scene", arguments));
                 print_steps("scene");
                 line("return c;");
                 return end();
+            }
             case LanguageFacts::Entry::pointers: {
                 std::vector<std::string> all = {"const float in[3]"};
                 for (const std::string& uniform : uniforms_)

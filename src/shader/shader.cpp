@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -19,6 +20,7 @@
 #include "shader/first_order.h"
 #include "shader/fitted_curves.h"
 #include "shader/float_run.h"
+#include "shader/grid_form.h"
 #include "shader/guaranteed_bound.h"
 #include "shader/measured_errors.h"
 #include "shader/print.h"
@@ -30,6 +32,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr double kLargestExposure = 64;
+/// The function of a GridStage in the text.
+constexpr const char* kGridFunction = "lattice";
 
 std::string joined(const std::string& name, const std::string& part) {
     return part.empty() ? name : name + "_" + part;
@@ -230,10 +234,15 @@ double measure_inverse(const ShaderRequest& request, const ShaderProgram& progra
     return worst;
 }
 
-double measure_in_float(const ShaderRequest& request, const ShaderProgram& program) {
+LanguageFacts language_of(const ShaderRequest& request) {
+    return request.application ? language_for(*request.application) : facts_of(request.language);
+}
+
+double measure_in_float(const ShaderRequest& request, const ShaderProgram& program,
+                        const GridsInText& grids) {
     if (request.is_inverse) return measure_inverse(request, program);
     const UniformValues values = values_of(request);
-    const FloatRun in_float(bound(program, values));
+    const FloatRun in_float(bound(program, values), grids);
     const ReferenceEngine reference(bind_uniforms(pipeline_of(request), values));
     // Sources that are no input space use the samples of Rec.709.
     const InputSpace* space = &find_input_space("lin_rec709");
@@ -324,9 +333,24 @@ std::string output_text(const ShaderRequest& request) {
     return "code values for " + display.title + " (" + display.source + ")";
 }
 
+/// Estimate of the largest error of nodes. It reaches the code value with a slope near 1, because
+/// nodes are code values or their logarithms.
+double error_of_nodes(const GridsInText& grids) {
+    double worst = 0;
+    for (const auto& [exact, in_text] : grids) {
+        const std::vector<double>& right = exact->nodes();
+        const std::vector<double>& got = in_text->nodes();
+        for (std::size_t i = 0; i < right.size(); ++i)
+            worst = std::max(worst, std::fabs(got[i] - right[i]));
+        if (in_text->has_formula())
+            worst = std::max(worst, first_order_error(node_formula(*exact)).vulkan);
+    }
+    return worst;
+}
+
 /// Result of measure_shader(), from the request's cache folder if present.
 ShaderErrors known_errors(const ShaderRequest& request, const ShaderProgram& program,
-                          const std::string& definition) {
+                          const std::string& definition, const GridsInText& grids) {
     // Change it if the measurement of errors or the float formulas change.
     constexpr int kVersion = 1;
     std::vector<std::string> functions;
@@ -343,6 +367,8 @@ ShaderErrors known_errors(const ShaderRequest& request, const ShaderProgram& pro
         request.view.exposure_stops, static_cast<int>(request.curves), fmt::join(functions, " "));
     for (const auto& [name, value] : values_of(request))
         key += fmt::format(", {} {}", name, value);
+    for (const auto& [exact, in_text] : grids)
+        key += in_text->has_formula() ? ", computed nodes" : ", halves";
     // Three errors, and the index of a function, or the count of functions for none.
     const NumberCheck are_errors = numbers_in(4, 0, kInfinity);
     const auto is_usable = [&](const std::vector<double>& numbers) {
@@ -390,7 +416,7 @@ std::string ascii(std::string text) {
 }
 
 std::string header(const ShaderRequest& request, const Shader& shader,
-                   const std::string& definition) {
+                   const std::string& definition, const GridsInText& grids) {
     const View& view = request.view;
     const Operator& op = *view.op.op;
     std::string text = "// " + op.title;
@@ -426,6 +452,13 @@ std::string header(const ShaderRequest& request, const Shader& shader,
     add("Input", request.is_inverse ? shown : scene);
     add("Output", request.is_inverse ? scene : shown);
     add("Negatives", request.is_inverse ? "" : op.negatives);
+    if (request.application) add("Use", request.application->steps);
+    for (const auto& [exact, in_text] : grids) {
+        add("3D LUT",
+            fmt::format("{0}^3 nodes, {1}, interpolated in tetrahedra", exact->edge(),
+                        in_text->has_formula() ? "four of which the text computes for each color"
+                                               : "in half floats"));
+    }
     if (facts_of(request.language).is_double && !request.application) {
         add("Precision",
             "64-bit float: the formulas of the double reference, with the mathematical functions "
@@ -464,7 +497,7 @@ std::string header(const ShaderRequest& request, const Shader& shader,
         View on_srgb = view;
         on_srgb.display = "srgb";
         const std::string measured =
-            request.curves == ShaderCurves::formula
+            request.curves == ShaderCurves::formula && grids.empty()
                 ? measured_errors(view.display == "srgb" && request.uniforms.empty()
                                       ? definition
                                       : definition_hash(build_view(on_srgb)))
@@ -493,11 +526,26 @@ std::string shader_function_name(const ShaderRequest& request) {
     return name;
 }
 
+std::optional<double> node_error(const ShaderApplication& application, const View& view) {
+    const LanguageFacts language = language_for(application);
+    double error = 0;
+    for (const Expr& e : nodes_of(compose(build_view(view)))) {
+        if (e.op() != ExprOp::grid) continue;
+        const bool has_formula = e.grid()->has_formula();
+        if (!has_formula && !language.has_textures) return std::nullopt;
+        // Nodes are code values of at most 1; half a step of a half float.
+        if (language.has_textures && !(has_formula && language.prefers_formula)) error = 0x1p-12;
+    }
+    return error;
+}
+
 ShaderErrors measure_shader(const ShaderRequest& request) {
     check(request);
     const ShaderProgram program = program_of(request);
+    const GridsInText grids =
+        grids_in_text(program, language_of(request), request.tables, shader_function_name(request));
     ShaderErrors errors;
-    errors.in_float = measure_in_float(request, program);
+    errors.in_float = measure_in_float(request, program, grids);
     if (request.is_inverse) return errors;
     const ShaderProgram constant = bound(program, values_of(request));
     const Expr metric = is_light(request) ? code_value(Expr::input()) : Expr::input();
@@ -506,14 +554,16 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
     if (request.curves == ShaderCurves::formula) {
         const GuaranteedBound guaranteed =
             guaranteed_bound(constant, metric, kUseful * std::max(errors.in_float, 0x1p-24));
-        errors.guaranteed = guaranteed.error;
-        if (std::isinf(guaranteed.error)) errors.arises_in = guaranteed.arises_in;
+        // The bound knows no nodes in half floats and no computed ones.
+        errors.guaranteed = grids.empty() ? guaranteed.error : kInfinity;
+        if (std::isinf(errors.guaranteed))
+            errors.arises_in = grids.empty() ? guaranteed.arises_in : kGridFunction;
     }
     std::array<Expr, 3> outputs = compose(constant);
     for (Expr& e : outputs)
         e = substitute(metric, Span<const Expr>(&e, 1));
     constexpr double kUseless = 0.1;
-    const double estimate = first_order_error(outputs).vulkan;
+    const double estimate = first_order_error(outputs).vulkan + error_of_nodes(grids);
     if (estimate < kUseless) errors.vulkan_estimate = estimate;
     return errors;
 }
@@ -523,27 +573,32 @@ Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     const Pipeline pipeline = pipeline_of(request);
     ShaderProgram program = program_of(request);
     add_names_of_numbers(names_in(program), program.names);
-    const LanguageFacts& language =
-        facts_of(request.application ? request.application->language : request.language);
+    const LanguageFacts language = language_of(request);
     Shader shader;
     shader.function = shader_function_name(request);
     const std::string definition = definition_hash(pipeline);
-    shader.errors = errors ? *errors : known_errors(request, program, definition);
+    const GridsInText grids = grids_in_text(program, language, request.tables, shader.function);
+    shader.errors =
+        errors && grids.empty() ? *errors : known_errors(request, program, definition, grids);
     const std::string prologue =
         *language.prologue ? std::string("\n") + language.prologue : std::string();
     PrintedProgram printed =
         print_program(program, language, shader.function, request.uniforms, request.tables);
-    shader.text = header(request, shader, definition) + prologue + printed.text;
+    const std::string comments = header(request, shader, definition, grids);
+    shader.text = comments + prologue + printed.text;
     shader.textures = std::move(printed.textures);
-    if (request.application) {
-        if (!shader.textures.empty()) {
-            throw Error(Problem{.value = shader.function + " reads a texture",
-                                .expected = "<<language>> instead of <<application>>: a file for " +
-                                            request.application->title + " holds none"});
-        }
-        shader.text = wrap(*request.application, shader, arguments_of(request));
+    if (!request.application) return shader;
+    // The same functions for the application's other backend.
+    std::string other;
+    if (const std::optional<ShaderLanguage> second = second_language(*request.application)) {
+        LanguageFacts facts = facts_of(*second);
+        facts.texture = "";
+        facts.loader = "";
+        facts.prologue = "";
+        other =
+            print_program(program, facts, shader.function, request.uniforms, request.tables).text;
     }
-    return shader;
+    return wrap(*request.application, shader, arguments_of(request), other);
 }
 
 TONEWRIGHT_NAMESPACE_END

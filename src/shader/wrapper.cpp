@@ -6,15 +6,18 @@
 #include <algorithm>
 
 #include "base/strings.h"
-#include "shader/print.h"
+#include "shader/grid_form.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Text around the functions. In the patterns `@function` is the last function, `@call` are the
-/// arguments after its color, each with a comma before it, `@arguments` the lines of `argument` and
+/// arguments after its color, each with a comma before it, `@names` their names, `@arguments` the
+/// lines of `argument` and
 /// `@declarations` those of `declaration`. Text between `@[` and `@]` is left out if there are no
-/// arguments. `@header` is replaced by the comments of the text.
+/// arguments, and text between `@(` and `@)` if there are no textures. `@header` is replaced by the
+/// comments of the text, `@grids` and `@bindings` by the lines of the GridForm, and `@other` by the
+/// functions in the second language.
 struct Wrapper {
     const char* id;
     const char* before;
@@ -30,10 +33,27 @@ struct Wrapper {
 
 constexpr Wrapper kWrappers[] = {
     {"threejs",
-     "import { ShaderChunk } from 'three';\n\n"
+     "import { @(DataTexture, HalfFloatType, Material, @)ShaderChunk@(, ShaderLib@) } from "
+     "'three';\n\n"
      "// Call it before materials are compiled, then: renderer.toneMapping = "
      "CustomToneMapping.\n"
      "export function use_@function() {\n"
+     "@("
+     "    const uniforms = {};\n"
+     "    for (const [name, [edge, data]] of Object.entries(grids)) {\n"
+     "        const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));\n"
+     "        const nodes = new DataTexture(new Uint16Array(bytes.buffer), edge, edge * edge);\n"
+     "        nodes.type = HalfFloatType;\n"
+     "        nodes.clone = () => nodes; // all materials share it\n"
+     "        nodes.needsUpdate = true;\n"
+     "        uniforms[name] = { value: nodes };\n"
+     "    }\n"
+     "    for (const shader of Object.values(ShaderLib)) Object.assign(shader.uniforms, "
+     "uniforms);\n"
+     "    // For materials with shaders of their own, such as that of OutputPass.\n"
+     "    Material.prototype.onBeforeCompile = (shader) => Object.assign(shader.uniforms, "
+     "uniforms);\n"
+     "@)"
      "    // three.js ends with its own CustomToneMapping, or with that of an earlier call.\n"
      "    ShaderChunk.tonemapping_pars_fragment = "
      "ShaderChunk.tonemapping_pars_fragment.replace(\n"
@@ -45,23 +65,54 @@ constexpr Wrapper kWrappers[] = {
      "    vec3 shown = @function(toneMappingExposure * color@call);\n"
      "    return max(shown, vec3(0.0)); // three.js encodes it with a power\n"
      "}\n"
-     "`;\n",
+     "`;\n"
+     "@(\n// Nodes of 3D LUTs: edge, and RGBA in half floats (base64).\n"
+     "const grids = {\n@grids};\n@)",
      "const float @name_value = @value; // @help"
      "\n",
      "@name_value"},
+    // A function of WGSL or GLSL finds a texture by the name that its node has; the first node is
+    // an argument, so that three.js declares the texture.
     {"threejs-tsl",
-     "import { wgsl, wgslFn } from 'three/tsl';\n\n"
+     "@(import { Data3DTexture, HalfFloatType } from 'three/webgpu';\n@)"
+     "import { Fn, glsl, glslFn@(, ivec3, texture3D@), wgsl, wgslFn } from 'three/tsl';\n\n"
      "const functions = wgsl(`\n",
      "`);\n\n"
-     "// renderer.library.addToneMapping(@function, CustomToneMapping);\n"
-     "export const @function = wgslFn(`\n"
-     "fn @function_exposed(color: vec3<f32>, exposure: f32) -> vec3<f32> {\n"
+     "// The same for WebGPURenderer without WebGPU.\n"
+     "const functionsInGlsl = glsl(`@other`);\n\n"
+     "@("
+     "// Nodes of 3D LUTs: edge, and RGBA in half floats (base64).\n"
+     "const grids = {\n@grids};\n"
+     "const nodes = Object.entries(grids).map(([name, [edge, data]]) => {\n"
+     "    const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));\n"
+     "    const texture = new Data3DTexture(new Uint16Array(bytes.buffer), edge, edge, edge);\n"
+     "    texture.type = HalfFloatType;\n"
+     "    texture.needsUpdate = true;\n"
+     "    return texture3D(texture).load(ivec3(0)).setName(name);\n"
+     "});\n"
+     "const bound = nodes.map((_, i) => ` + 0.0 * node_${i}.rgb`).join('');\n\n"
+     "@)"
+     "const inWgsl = wgslFn(`\n"
+     "fn @function_exposed(color: vec3<f32>, exposure: f32@(${nodes.map((_, i) => `, node_${i}: "
+     "vec4<f32>`).join('')}@)) -> vec3<f32> {\n"
      "@arguments"
-     "    let shown = @function(color * exposure@call);\n"
+     "    let shown = @function(color * exposure@call)@(${bound}@);\n"
      "    return max(shown, vec3<f32>(0.0)); // three.js encodes it with a power\n"
      "}\n"
-     "`, [functions]);\n",
-     "    let @name_value = @value; // @help\n", "@name_value"},
+     "`, [functions]);\n"
+     "const inGlsl = glslFn(`\n"
+     "vec3 @function_exposed(vec3 color, float exposure@(${nodes.map((_, i) => `, vec4 "
+     "node_${i}`).join('')}@)) {\n"
+     "@declarations"
+     "    vec3 shown = @function(color * exposure@call)@(${bound}@);\n"
+     "    return max(shown, vec3(0.0));\n"
+     "}\n"
+     "`, [functionsInGlsl]);\n\n"
+     "// renderer.library.addToneMapping(@function, CustomToneMapping);\n"
+     "export const @function = Fn(([color, exposure], { renderer }) =>\n"
+     "    (renderer.backend.isWebGPUBackend ? inWgsl : inGlsl)(color, exposure@(, ...nodes@)));\n",
+     "    let @name_value = @value; // @help\n", "@name_value",
+     "    float @name_value = @value; // @help\n"},
     {"bevy", "#define_import_path tonewright::@function\n\n",
      "\n#import bevy_core_pipeline::fullscreen_vertex_shader::FullscreenVertexOutput\n\n"
      "@group(0) @binding(0) var screen_texture: texture_2d<f32>;\n"
@@ -74,26 +125,107 @@ constexpr Wrapper kWrappers[] = {
      "}\n",
      "override @name: f32 = @value; // @help\n"},
     {"godot",
-     "#[compute]\n"
-     "#version 450\n\n"
+     "@tool\n"
+     "extends CompositorEffect\n"
+     "# Tone mapping by Tonewright. Add this script to the Compositor of a WorldEnvironment or a "
+     "camera.\n\n"
+     "@arguments@[\n@]"
+     "const CODE := \"\"\"#version 450\n\n"
      "layout(local_size_x = 8, local_size_y = 8, local_size_z = 1) in;\n"
      "layout(rgba16f, set = 0, binding = 0) uniform image2D color_image;\n"
      "layout(push_constant, std430) uniform Parameters {\n"
      "    vec2 raster_size;\n"
      "    vec2 reserved;\n"
-     "@arguments"
+     "@declarations"
      "} parameters;\n\n",
      "\nvoid main() {\n"
      "    ivec2 place = ivec2(gl_GlobalInvocationID.xy);\n"
      "    if (any(greaterThanEqual(place, ivec2(parameters.raster_size)))) return;\n"
      "    vec4 color = imageLoad(color_image, place);\n"
      "    imageStore(color_image, place, vec4(@function(color.rgb@call), color.a));\n"
-     "}\n",
-     "    float @name; // @help (@value)\n", "parameters.@name"},
+     "}\n"
+     "\"\"\"\n\n"
+     "@("
+     "# Nodes of 3D LUTs: edge, and RGBA in half floats (base64).\n"
+     "const GRIDS := [\n@grids]\n\n"
+     "@)"
+     "var _device: RenderingDevice\n"
+     "var _shader: RID\n"
+     "var _pipeline: RID\n"
+     "@(var _sampler: RID\n"
+     "var _textures: Array[RID]\n@)"
+     "\n\n"
+     "func _init() -> void:\n"
+     "\teffect_callback_type = EFFECT_CALLBACK_TYPE_POST_TRANSPARENT\n"
+     "\tRenderingServer.call_on_render_thread(_make)\n\n\n"
+     "func _notification(what: int) -> void:\n"
+     "\tif what == NOTIFICATION_PREDELETE and _device:\n"
+     "\t\tfor rid: RID in [_shader@(, _sampler@)]@( + _textures@):\n"
+     "\t\t\tif rid.is_valid():\n"
+     "\t\t\t\t_device.free_rid(rid)\n\n\n"
+     "func _make() -> void:\n"
+     "\t_device = RenderingServer.get_rendering_device()\n"
+     "\tif not _device:\n"
+     "\t\tpush_error(\"@function needs the renderer Forward+ or Mobile\")\n"
+     "\t\treturn\n"
+     "\tvar source := RDShaderSource.new()\n"
+     "\tsource.source_compute = CODE\n"
+     "\tvar spirv := _device.shader_compile_spirv_from_source(source)\n"
+     "\tif spirv.compile_error_compute:\n"
+     "\t\tpush_error(spirv.compile_error_compute)\n"
+     "\t\treturn\n"
+     "\t_shader = _device.shader_create_from_spirv(spirv)\n"
+     "\t_pipeline = _device.compute_pipeline_create(_shader)\n"
+     "@("
+     "\t_sampler = _device.sampler_create(RDSamplerState.new())\n"
+     "\tfor grid: Array in GRIDS:\n"
+     "\t\tvar format := RDTextureFormat.new()\n"
+     "\t\tformat.texture_type = RenderingDevice.TEXTURE_TYPE_3D\n"
+     "\t\tformat.format = RenderingDevice.DATA_FORMAT_R16G16B16A16_SFLOAT\n"
+     "\t\tformat.width = grid[0]\n"
+     "\t\tformat.height = grid[0]\n"
+     "\t\tformat.depth = grid[0]\n"
+     "\t\tformat.usage_bits = RenderingDevice.TEXTURE_USAGE_SAMPLING_BIT\n"
+     "\t\t_textures.append(_device.texture_create(format, RDTextureView.new(), "
+     "[Marshalls.base64_to_raw(grid[1])]))\n"
+     "@)"
+     "\n\n"
+     "func _render_callback(_type: int, data: RenderData) -> void:\n"
+     "\tvar buffers := data.get_render_scene_buffers() as RenderSceneBuffersRD\n"
+     "\tif not buffers or not _pipeline.is_valid():\n"
+     "\t\treturn\n"
+     "\tvar size := buffers.get_internal_size()\n"
+     "\tvar numbers := PackedFloat32Array([size.x, size.y, 0.0, 0.0@names])\n"
+     "\tnumbers.resize((numbers.size() + 3) / 4 * 4)\n"
+     "\tvar constants := numbers.to_byte_array()\n"
+     "\tfor view in buffers.get_view_count():\n"
+     "\t\tvar uniforms: Array[RDUniform] = []\n"
+     "\t\tvar image := RDUniform.new()\n"
+     "\t\timage.uniform_type = RenderingDevice.UNIFORM_TYPE_IMAGE\n"
+     "\t\timage.add_id(buffers.get_color_layer(view))\n"
+     "\t\tuniforms.append(image)\n"
+     "@("
+     "\t\tfor texture in _textures:\n"
+     "\t\t\tvar nodes := RDUniform.new()\n"
+     "\t\t\tnodes.uniform_type = RenderingDevice.UNIFORM_TYPE_SAMPLER_WITH_TEXTURE\n"
+     "\t\t\tnodes.binding = uniforms.size()\n"
+     "\t\t\tnodes.add_id(_sampler)\n"
+     "\t\t\tnodes.add_id(texture)\n"
+     "\t\t\tuniforms.append(nodes)\n"
+     "@)"
+     "\t\tvar list := _device.compute_list_begin()\n"
+     "\t\t_device.compute_list_bind_compute_pipeline(list, _pipeline)\n"
+     "\t\t_device.compute_list_bind_uniform_set(list, UniformSetCacheRD.get_cache(_shader, 0, "
+     "uniforms), 0)\n"
+     "\t\t_device.compute_list_set_push_constant(list, constants, constants.size())\n"
+     "\t\t_device.compute_list_dispatch(list, (size.x + 7) / 8, (size.y + 7) / 8, 1)\n"
+     "\t\t_device.compute_list_end()\n",
+     "@export_range(@min, @max) var @name := @value # @help\n", "parameters.@name",
+     "    float @name;\n"},
     {"unity",
      "Shader \"Tonewright/@function\" {\n"
      "Properties {\n"
-     "@arguments"
+     "@arguments@grids"
      "}\n"
      "SubShader {\n"
      "Tags { \"RenderType\" = \"Opaque\" \"RenderPipeline\" = \"UniversalPipeline\" }\n"
@@ -120,12 +252,13 @@ constexpr Wrapper kWrappers[] = {
      "\n// A Custom node with the input color:\n"
      "//   Include File Paths: /Project/Tonewright/@function.ush\n"
      "//   Code: return @function(color.rgb@call);\n"
-     "@arguments",
+     "@arguments@grids",
      "// @name is another input of the node: @help, @value\n"},
     {"mpv",
-     "@arguments"
+     "@arguments@grids"
      "//!HOOK MAIN\n"
      "//!BIND HOOKED\n"
+     "@bindings"
      "//!DESC Tonewright @function\n\n",
      "\nvec4 hook() {\n"
      "    vec4 color = HOOKED_texOff(0);\n"
@@ -164,6 +297,7 @@ constexpr Wrapper kWrappers[] = {
      "kernel @function_kernel : ImageComputationKernel<ePixelWise> {\n"
      "    Image<eRead, eAccessPoint, eEdgeClamped> src;\n"
      "    Image<eWrite> dst;\n"
+     "@grids"
      "@[\n"
      "param:\n"
      "@declarations\n"
@@ -212,6 +346,19 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return text;
 }
 
+/// Removes the marks, and the text between them unless it is wanted.
+std::string only_if(bool is_wanted, std::string text, std::string_view begin,
+                    std::string_view end) {
+    for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at)) {
+        const std::size_t last = text.find(end, at);
+        const std::string inner =
+            is_wanted ? text.substr(at + begin.size(), last - at - begin.size()) : std::string();
+        text.replace(at, last + end.size() - at, inner);
+        at += inner.size();
+    }
+    return text;
+}
+
 std::string of_argument(const std::string& pattern, const ShaderArgument& argument,
                         const LanguageFacts& language) {
     std::string text = replaced(pattern, "@name", argument.name);
@@ -226,29 +373,38 @@ std::string of_argument(const std::string& pattern, const ShaderArgument& argume
 const std::vector<ShaderApplication>& shader_applications() {
     static const std::vector<ShaderApplication> applications = {
         {"threejs", "three.js (WebGL)", ".js", ShaderLanguage::glsl_es, "linear",
-         "Call use_...() and set renderer.toneMapping to CustomToneMapping; toneMappingExposure is "
-         "a factor."},
+         "Call use_...() before the first material is compiled, and set renderer.toneMapping to "
+         "CustomToneMapping, instead of a tone mapping of three.js. renderer.toneMappingExposure "
+         "is "
+         "a factor before the curve."},
         {"threejs-tsl", "three.js (WebGPU)", ".js", ShaderLanguage::wgsl, "linear",
-         "renderer.library.addToneMapping(..., CustomToneMapping), then set renderer.toneMapping."},
+         "Call renderer.library.addToneMapping(..., CustomToneMapping), and set "
+         "renderer.toneMapping to CustomToneMapping, instead of a tone mapping of three.js. "
+         "renderer.toneMappingExposure is a factor before the curve."},
         {"bevy", "Bevy", ".wgsl", ShaderLanguage::wgsl, "linear",
-         "A full-screen material with Tonemapping::None on the camera; Bevy encodes its picture."},
-        {"godot", "Godot 4", ".glsl", ShaderLanguage::glsl, "linear",
-         "A CompositorEffect, after the opaque and transparent passes, with the tone mapper Linear "
-         "and exposure and white 1."},
+         "A full-screen material with Tonemapping::None on the camera. Exposure comes before it. "
+         "Bevy encodes its picture."},
+        {"godot", "Godot 4", ".gd", ShaderLanguage::glsl, "linear",
+         "Add the script to the Compositor of a WorldEnvironment or a camera, and set the "
+         "Environment's tone mapper to Linear, with exposure and white 1. Godot encodes its "
+         "picture."},
         {"unity", "Unity (URP)", ".shader", ShaderLanguage::hlsl, "linear",
          "A Full Screen Pass Renderer Feature after post-processing, with Tonemapping None and HDR "
-         "on."},
+         "on. Exposure comes before it. URP encodes its picture."},
         {"unreal", "Unreal Engine", ".ush", ShaderLanguage::hlsl, "srgb",
-         "A post-process material at `Replacing the Tonemapper` with a Custom node; its result is "
-         "not encoded again, and bloom and vignette are left out there."},
+         "A post-process material at `Replacing the Tonemapper` with a Custom node. Unreal's "
+         "exposure comes before it; its result is not encoded again, and bloom and vignette are "
+         "left out there."},
         {"mpv", "mpv", ".glsl", ShaderLanguage::glsl, "srgb",
-         "mpv --vo=gpu --vf=format=gamma=srgb --glsl-shader=FILE on scene-linear pictures (EXR); "
-         "sliders need mpv 0.36."},
+         "mpv --vo=gpu --vf=format=gamma=srgb --glsl-shader=FILE on scene-linear pictures (EXR), "
+         "which mpv does not tone map then; sliders need mpv 0.36."},
         {"reshade", "ReShade", ".fx", ShaderLanguage::hlsl, "linear",
-         "For games that pass scRGB (scene-linear) to ReShade; in other games the picture is "
-         "already tone mapped."},
+         "For games that pass scRGB (scene-linear) to ReShade, with their own tone mapping off; in "
+         "other games the picture is already tone mapped."},
         {"resolve", "DaVinci Resolve (DCTL)", ".dctl", ShaderLanguage::dctl, "rec1886",
-         "Copy it into the LUT folder; a DCTL effect on a node whose input is scene-linear."},
+         "Copy it into the LUT folder; a DCTL effect on a node whose input is scene-linear, "
+         "without "
+         "tone mapping before or after it."},
         {"nuke", "Nuke (BlinkScript)", ".rpp", ShaderLanguage::blink, "linear",
          "The Kernel File of a BlinkScript node on scene-linear RGBA; the Viewer and the Write "
          "node "
@@ -269,17 +425,39 @@ const ShaderApplication& find_shader_application(std::string_view name) {
     return shader_applications()[find_choice("application", name, ids)];
 }
 
-std::string wrap(const ShaderApplication& application, const Shader& shader,
-                 const std::vector<ShaderArgument>& arguments) {
+std::optional<ShaderLanguage> second_language(const ShaderApplication& application) {
+    if (application.id == "threejs-tsl") return ShaderLanguage::glsl_es;
+    return std::nullopt;
+}
+
+Shader wrap(const ShaderApplication& application, Shader shader,
+            const std::vector<ShaderArgument>& arguments, const std::string& other) {
     const Wrapper& wrapper = wrapper_of(application);
     const LanguageFacts& language = facts_of(application.language);
     std::string lines;
     std::string declarations;
     std::string call;
+    std::string names;
     for (const ShaderArgument& argument : arguments) {
         lines += of_argument(wrapper.argument, argument, language);
         declarations += of_argument(wrapper.declaration, argument, language);
         call += ", " + of_argument(wrapper.argument_in_call, argument, language);
+        names += ", " + argument.name;
+    }
+    std::string grids;
+    std::string bindings;
+    for (const ShaderTexture& texture : shader.textures) {
+        const GridForm& form = *grid_form(application);
+        const auto filled = [&](std::string text) {
+            text = replaced(replaced(text, "@texture", texture.name), "@edge",
+                            std::to_string(texture.size[0]));
+            return form.data ? replaced(text, "@data", form.data(texture)) : text;
+        };
+        grids += filled(form.lines);
+        bindings += filled(form.bindings);
+        if (*form.parameter) call += ", " + texture.name;
+        if (form.contents)
+            shader.files.push_back({texture.name + form.suffix, form.contents(texture)});
     }
     std::string functions = shader.text;
     std::string header;
@@ -289,15 +467,17 @@ std::string wrap(const ShaderApplication& application, const Shader& shader,
         functions.erase(0, end);
     }
     const auto filled = [&](std::string text) {
-        const std::size_t begin = text.find("@[");
-        if (begin != std::string::npos && arguments.empty())
-            text.erase(begin, text.find("@]") - begin);
-        text = replaced(replaced(text, "@[", ""), "@]", "");
+        text = only_if(!arguments.empty(), text, "@[", "@]");
+        text = only_if(!shader.textures.empty(), text, "@(", "@)");
         text = replaced(text, "@header", header);
         text = replaced(text, "@function", shader.function);
         text = replaced(text, "@call", call);
+        text = replaced(text, "@names", names);
         text = replaced(text, "@declarations", declarations);
-        return replaced(text, "@arguments", lines);
+        text = replaced(text, "@arguments", lines);
+        text = replaced(text, "@bindings", bindings);
+        text = replaced(text, "@other", other);
+        return replaced(text, "@grids", grids);
     };
     // Applications require certain first lines, so the header comes after them. Their shaders
     // already begin with the lines of the language.
@@ -308,7 +488,9 @@ std::string wrap(const ShaderApplication& application, const Shader& shader,
         functions = replaced(functions, std::string("\n") + wrapper.indent + "\n", "\n\n");
         functions.erase(functions.rfind('\n') + 1);
     }
-    return filled(wrapper.before) + functions + filled(wrapper.after);
+    shader.text = filled(wrapper.before) + functions + filled(wrapper.after);
+    shader.textures.clear();
+    return shader;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,13 @@ struct ShaderArgument {
     double max;
 };
 
-/// File contents for the application.
-[[nodiscard]] std::string wrap(const ShaderApplication& application, const Shader& shader,
-                               const std::vector<ShaderArgument>& arguments);
+/// The language of the application's other backend, whose functions stand in the same file.
+[[nodiscard]] std::optional<ShaderLanguage> second_language(const ShaderApplication& application);
+
+/// The file for the application: the shader with its textures in the text or in files.
+/// @param shader  in the application's language
+/// @param other   its functions in second_language()
+[[nodiscard]] Shader wrap(const ShaderApplication& application, Shader shader,
+                          const std::vector<ShaderArgument>& arguments, const std::string& other);
 
 TONEWRIGHT_NAMESPACE_END

@@ -121,9 +121,11 @@ async function draw({ vertex, fragment, picture, size, out, bindings }) {
         // Without a filter: in the middle of a texel, SwiftShader mixes some of its neighbors in.
         sampler: device.createSampler(),
     };
-    const resources = bindings.map((binding) => known[binding] ?? {
-        buffer: bufferOf(4 * binding.length, GPUBufferUsage.UNIFORM, Float32Array.from(binding)),
-    });
+    const resourceOf = async (binding) => {
+        if (binding.texels) return textureOf(await readFile(binding.texels), binding.size, 'rgba16float', 8);
+        return known[binding] ?? { buffer: bufferOf(4 * binding.length, GPUBufferUsage.UNIFORM, Float32Array.from(binding)) };
+    };
+    const resources = await Promise.all(bindings.map(resourceOf));
     const encoder = device.createCommandEncoder();
     const pass = encoder.beginRenderPass({ colorAttachments: [{ view: target.createView(), loadOp: 'clear', storeOp: 'store' }] });
     pass.setPipeline(pipeline);

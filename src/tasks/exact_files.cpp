@@ -13,8 +13,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-ExactFiles::ExactFiles(const BakeRequest& request, Settings settings)
-    : settings_(std::move(settings)) {
+ExactFiles::ExactFiles(const BakeRequest& request) {
     request_.op = request.op;
     request_.input = request.input;
     request_.input_units = request.input_units;
@@ -69,34 +68,15 @@ ExactFile ExactFiles::table(const LutApplication& host) {
             is_picture_format(host.format) ? ".png" : "." + name_of(host.format)};
 }
 
-/// A shader of a grid is the formula that the grid samples, if it has one.
 std::optional<ExactFile> ExactFiles::shader(const ShaderApplication& application) const {
     const InputSpace& input = request_.input ? *request_.input : find_input_space("lin_rec709");
-    const auto view = [&](const ResolvedOperator& op) {
-        return make_view(op, in_units({input.id, input.primaries}, request_.input_units),
-                         request_.exposure_stops, request_.display.value_or(application.display),
-                         request_.reference_white);
-    };
-    ExactFile file{0, application.title + ", shader", application.extension, true};
-    const ResolvedOperator& op = request_.op;
-    const View own = view(op);
-    if (!reads_grid(own)) return file;
-    const std::vector<Preset>& presets = op.op->presets;
-    const auto preset = std::find_if(presets.begin(), presets.end(),
-                                     [](const Preset& p) { return p.id == "formula"; });
-    if (preset == presets.end()) return std::nullopt;
-    ResolvedOperator by_formula = resolve(*op.op, &*preset, settings_, op.params.look());
-    by_formula.owner = op.owner;
-    const std::vector<float> light = photograph_light(find_input_space("lin_rec709").primaries);
-    std::vector<double> shown(light.size());
-    std::vector<double> wanted(light.size());
-    ReferenceEngine(build_view(view(by_formula)))
-        .run_rgb(light.data(), shown.data(), light.size() / 3);
-    ReferenceEngine(build_view(own)).run_rgb(light.data(), wanted.data(), light.size() / 3);
-    file.error = photograph_error(own, shown, wanted, nullptr).p999;
-    file.title += " of the formula";
-    file.is_formula = true;
-    return file;
+    const View view =
+        make_view(request_.op, in_units({input.id, input.primaries}, request_.input_units),
+                  request_.exposure_stops, request_.display.value_or(application.display),
+                  request_.reference_white);
+    const std::optional<double> error = node_error(application, view);
+    if (!error) return std::nullopt;
+    return ExactFile{*error, application.title + ", shader", application.extension, true};
 }
 
 TONEWRIGHT_NAMESPACE_END

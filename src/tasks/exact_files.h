@@ -19,18 +19,15 @@ struct ExactFile {
     std::string title;
     std::string extension;
     bool is_shader = false;
-    /// A shader of the operator's preset `formula`.
-    bool is_formula = false;
 };
 
 /// The files of one operator for applications. Applications share what was measured.
 class ExactFiles {
   public:
-    /// @param request   the operator, its input, its display, and the cache folder; the rest does
+    /// @param request  the operator, its input, its display, and the cache folder; the rest does
     /// not
-    ///                  count
-    /// @param settings  of the operator, also for its formula
-    ExactFiles(const BakeRequest& request, Settings settings);
+    ///                 count
+    explicit ExactFiles(const BakeRequest& request);
 
     /// The most exact first.
     [[nodiscard]] std::vector<ExactFile> of(const LutApplication& host);
@@ -41,7 +38,6 @@ class ExactFiles {
     [[nodiscard]] std::optional<ExactFile> shader(const ShaderApplication& application) const;
 
     BakeRequest request_;
-    Settings settings_;
     std::map<std::string, double> known_;  // errors of tables
     std::optional<LutChain> chain_;        // the same for all applications: their display is sRGB
 };

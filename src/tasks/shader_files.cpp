@@ -17,14 +17,14 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Raw little-endian floats beside the text: FOLDER/NAME.rgba32f.
-std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string& text_file) {
+/// Files beside the text. Textures of a language are raw little-endian floats: NAME.rgba32f.
+std::vector<GeneratedFile> files_beside(const std::string& text_file, const Shader& shader) {
     std::vector<GeneratedFile> files;
-    for (const ShaderTexture& texture : shader.textures) {
-        const std::filesystem::path path =
-            std::filesystem::path(text_file).parent_path() / (texture.name + ".rgba32f");
-        files.push_back({path.string(), little_endian_bytes(texture.rgba)});
-    }
+    const std::filesystem::path folder = std::filesystem::path(text_file).parent_path();
+    for (const ShaderTexture& texture : shader.textures)
+        files.push_back({folder / (texture.name + ".rgba32f"), little_endian_bytes(texture.rgba)});
+    for (const ShaderFile& file : shader.files)
+        files.push_back({folder / file.name, file.contents});
     return files;
 }
 
@@ -44,14 +44,16 @@ ShaderResult write_shader_files(const ShaderRequest& request, const std::string&
                         "formulas need more digits than a shader has",
                         shader.function, rounded_up(shader.errors.in_float)));
     }
-    if (!shader.textures.empty() && file.empty()) {
-        throw Error(Problem{.value = fmt::format("{} has a texture", shader.function),
-                            .expected = "<<target=FILE>>, beside which it is written"});
+    const std::vector<GeneratedFile> beside = files_beside(file, shader);
+    if (!beside.empty() && file.empty()) {
+        throw Error(Problem{
+            .value = fmt::format("{} reads the file {}", shader.function, beside.front().path),
+            .expected = "<<target=FILE>>, beside which it is written"});
     }
     if (file.empty()) return result;
-    for (const auto& [path, contents] : texture_files(shader, file)) {
+    for (const auto& [path, contents] : beside) {
         write_text_atomically(path, contents);
-        result.textures.push_back(path);
+        result.beside.push_back(path);
     }
     write_text_atomically(file, shader.text);
     return result;
@@ -69,12 +71,7 @@ ShaderSetResult write_shader_set(const ShaderSetRequest& set) {
         request.view = make_view(resolve_operator(variant.name, {}, variant.look), set.input,
                                  set.exposure_stops, set.display);
         const ShaderErrors errors = measure_shader(request);  // all languages share them
-        const bool is_grid = reads_grid(request.view);
         for (const ShaderLanguageInfo& language : set.languages) {
-            if (is_grid && !language.holds_grids) {
-                ++result.left_out[language.id];
-                continue;
-            }
             request.language = language.language;
             const Shader shader = write_shader(request, &errors);
             const std::string path = language.id + "/" + shader.function + language.extension;
@@ -84,7 +81,7 @@ ShaderSetResult write_shader_set(const ShaderSetRequest& set) {
                             rounded_up(errors.guaranteed), rounded_up(errors.vulkan_estimate));
             files.push_back({path, shader.text});
             ++result.count;
-            for (GeneratedFile& file : texture_files(shader, path))
+            for (GeneratedFile& file : files_beside(path, shader))
                 files.push_back(std::move(file));
         }
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -15,8 +14,8 @@ struct ShaderResult {
     Shader shader;
     /// True for numbers of 64 bits: the reference itself.
     bool is_double = false;
-    /// Files of its textures, beside the text.
-    std::vector<std::string> textures = {};
+    /// Paths of its files beside the text.
+    std::vector<std::string> beside = {};
 };
 
 /// Writes a shader and its textures. Old files are replaced when the new ones are complete.
@@ -40,8 +39,6 @@ struct ShaderSetRequest {
 
 struct ShaderSetResult {
     std::size_t count = 0;
-    /// Operators without a shader, because they read grids, by the id of the language.
-    std::map<std::string, std::size_t> left_out = {};
 };
 
 /// Writes FOLDER/LANGUAGE/tw_NAME.EXTENSION, and MANIFEST.csv.

@@ -158,7 +158,7 @@ NpmOperator npm_operator(const OperatorVariant& variant) {
     entry.glsl = write_shader(request, &errors);
     request.language = ShaderLanguage::wgsl;
     entry.wgsl = write_shader(request, &errors);
-    if (reads_grid(request.view)) return entry;
+    
     request.application = &find_shader_application("threejs");
     entry.threejs = write_shader(request, &errors);
     request.application = &find_shader_application("threejs-tsl");

@@ -3,16 +3,20 @@
 
 A stand-in takes the place of what each application puts around the file: a module of Bevy, an include of Unity, the
 Custom node of Unreal, the kernel of Resolve. Bevy, Unity and Unreal draw a picture on Dawn, Resolve's runs on pocl; all
-with a slider for exposure, against `tonewright eval`.
+with a slider for exposure, against `tonewright eval`. Files with a 3D LUT are drawn with the texture that other readers find
+in the file beside them: ktx-parse (three.js), OpenImageIO, OpenColorIO.
 
     python3 -m pytest tests/shader/test_applications.py --tonewright build/release/bin/tonewright [--screenshots FOLDER]
 """
 
+import base64
 import pathlib
 import re
 import subprocess
 
 import numpy as np
+import OpenImageIO
+import PyOpenColorIO
 from dawn import Dawn, spirv_of
 from executed import reference
 from lut_encodings import srgb_encode
@@ -22,7 +26,9 @@ from pictures import read_rgb
 SIZE = (320, 180)
 STOPS = 0.5
 # Within 2e-6 as a function, except where the terms of a polynomial cancel (see docs/shaders.md).
-BOUNDS = {"hable": 2e-6, "khronos_neutral": 2e-6, "agx_threejs": 6e-5}
+BOUNDS = {"hable": 2e-6, "khronos_neutral": 2e-6, "agx_threejs": 6e-5, "agx_blender": 1e-5}
+# A node in half floats is 2^-12 off, which a power of 2.4 and sRGB's curve enlarge a little.
+HALF_NODES = 1.2 * 2**-12
 
 # Bevy's module of that name: the corners of one triangle around the picture.
 BEVY = """
@@ -83,7 +89,8 @@ def bevy(text: str, function: str, folder: pathlib.Path) -> dict:
     assert count == 1, "the file does not import FullscreenVertexOutput"
     path.write_text(text)
     return {"vertex": {"source": str(path), "entryPoint": "vertex"}, "bindings": ["picture", "sampler"],
-            "fragment": {"source": str(path), "entryPoint": "fragment", "constants": {"exposure": STOPS}}}
+            "fragment": {"source": str(path), "entryPoint": "fragment",
+                         "constants": {"exposure": STOPS} if "override exposure" in text else {}}}
 
 
 def hlsl(text: str, vertex: str, fragment: str, function: str, folder: pathlib.Path) -> dict:
@@ -91,11 +98,13 @@ def hlsl(text: str, vertex: str, fragment: str, function: str, folder: pathlib.P
     path.write_text(text)
     stages = {stage: {"source": str(spirv_of(path, stage, entry, f"-I{folder}")), "entryPoint": entry}
               for stage, entry in (("vert", vertex), ("frag", fragment))}
-    return {"vertex": stages["vert"], "fragment": stages["frag"], "bindings": ["picture", "sampler", [STOPS]]}
+    bindings = ["picture", "sampler"] + ([[STOPS]] if "exposure;" in text else [])
+    return {"vertex": stages["vert"], "fragment": stages["frag"], "bindings": bindings}
 
 
 def unity(text: str, function: str, folder: pathlib.Path) -> dict:
-    assert found(r'_exposure\("exposure", Range\((.*?)\)\)', text) == "-8.0, 8.0", "the slider of exposure"
+    if "_exposure" in text:
+        assert found(r'_exposure\("exposure", Range\((.*?)\)\)', text) == "-8.0, 8.0", "the slider of exposure"
     program = found(r"HLSLPROGRAM\n(.*?)ENDHLSL", text)
     for name, stand_in in UNITY.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -109,6 +118,9 @@ def unreal(text: str, function: str, folder: pathlib.Path) -> dict:
     (folder / include).parent.mkdir(parents=True, exist_ok=True)
     (folder / include).write_text(text.removeprefix("#pragma once\n"))  # glslang warns of it
     material = UNREAL.replace("INCLUDE", include).replace("CODE", found(r"Code: (.*?)\n", text))
+    for texture in re.findall(r"// (\w+) is another input of the node: a Texture Object", text):
+        material = material.replace("float exposure;", f"Texture3D {texture};").replace(", float exposure", "").replace(
+            ", exposure", "")
     return hlsl(material, "Vert", "Fragment", function, folder)
 
 
@@ -116,6 +128,55 @@ def resolve(text: str, function: str, picture: np.ndarray) -> np.ndarray:
     """The result of transform(), which also gets the position of the pixel."""
     call = f"transform({SIZE[0]}, {SIZE[1]}, i / 3 % {SIZE[0]}, i / 3 / {SIZE[0]}, a[i], a[i + 1], a[i + 2])"
     return OpenCl({function: f"#define SLIDER {STOPS}f\n{text}"}, {function: call}).run(function, picture)
+
+
+def ktx2(path: pathlib.Path, modules: pathlib.Path) -> np.ndarray:
+    """Texels in half floats."""
+    script = f"""import {{ readFileSync, writeFileSync }} from 'fs';
+const {{ read }} = await import({str(modules / "three/examples/jsm/libs/ktx-parse.module.js")!r});
+const file = read(new Uint8Array(readFileSync({str(path)!r})));
+if (file.vkFormat !== 97 || file.supercompressionScheme !== 0 || file.levels.length !== 1) throw new Error('another format');
+writeFileSync({str(path.with_suffix(".texels"))!r}, file.levels[0].levelData);
+console.log(file.pixelWidth, file.pixelHeight, file.pixelDepth, file.keyValue.KTXwriter);"""
+    said = subprocess.run(["node", "--input-type=module", "-e", script], check=True, capture_output=True, text=True).stdout.split()
+    assert said[:4] == ["57", "57", "57", "Tonewright"], said
+    return np.fromfile(path.with_suffix(".texels"), "<f2")
+
+
+def exr(path: pathlib.Path, _) -> np.ndarray:
+    picture = OpenImageIO.ImageBuf(str(path))
+    assert (picture.spec().width, picture.spec().height, str(picture.spec().format)) == (57, 57 * 57, "half"), picture.geterror()
+    return picture.get_pixels(OpenImageIO.FLOAT).astype("<f2").ravel()
+
+
+def script(path: pathlib.Path, _) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(found(r'Data = "(.*?)"', path.read_text())), "<f2")
+
+
+def cube(path: pathlib.Path) -> np.ndarray:
+    """The colors of a 3D LUT, red fastest, at its nodes."""
+    lut = PyOpenColorIO.Config.CreateRaw().getProcessor(PyOpenColorIO.FileTransform(str(path))).getDefaultCPUProcessor()
+    place = np.arange(57, dtype=np.float32) / 56
+    b, g, r = np.meshgrid(place, place, place, indexing="ij")
+    rgb = np.ascontiguousarray(np.stack([r, g, b], -1).reshape(-1, 3))
+    lut.applyRGB(rgb)
+    return rgb
+
+
+def resolve_with_lut(text: str, folder: pathlib.Path, picture: np.ndarray) -> np.ndarray:
+    """transform() with an array in place of Resolve's LUT; only nodes may be read."""
+    name, file = re.search(r"DEFINE_LUT\((\w+), (\S+)\)", text).groups()
+    table = ",".join(f"{x:.9e}f" for x in cube(folder / file).ravel())
+    stand_in = f"""__constant float table[{3 * 57**3}] = {{ {table} }};
+static inline float3 at_node(float x, float y, float z) {{
+    float3 place = (float3)(56 * x, 56 * y, 56 * z);
+    if (any(fabs(place - rint(place)) > 1e-4f)) return (float3)(NAN);
+    int i = 3 * ((int)rint(place.x) + 57 * ((int)rint(place.y) + 57 * (int)rint(place.z)));
+    return (float3)(table[i], table[i + 1], table[i + 2]);
+}}
+#define APPLY_LUT(x, y, z, lut) at_node(x, y, z)
+"""
+    return resolve(stand_in + re.sub(r"DEFINE_LUT.*\n", "", text), "with_lut", picture)
 
 
 def write_png(codes: np.ndarray, path: pathlib.Path) -> None:
@@ -138,7 +199,8 @@ def test_files(request, report, command, scratch):
                                           ("unreal", unreal, "srgb"), ("resolve", None, "rec1886")):
         for operator in BOUNDS:
             function = f"{application}_{operator}"
-            text = subprocess.run([command, "shader", operator, "--for", application, "--uniforms", "exposure"],
+            text = subprocess.run([command, "shader", operator, "--for", application, "--uniforms", "exposure", "--tables",
+                                   "formula"],
                                   check=True, capture_output=True, text=True).stdout
             out = scratch / f"{function}.out"
             if prepare:
@@ -148,14 +210,32 @@ def test_files(request, report, command, scratch):
                 shown = resolve(text, function, scene)
                 np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(out)
             drawn[application, operator] = out, display
+    # Without a slider: the binding after the picture and its sampler is the texture.
+    for application, prepare, display, read in (("bevy", bevy, "linear", ktx2), ("unity", unity, "linear", script),
+                                                ("unreal", unreal, "srgb", exr)):
+        file, out = scratch / f"{application}_lut.txt", scratch / f"{application}_lut.out"
+        subprocess.run([command, "shader", "agx_blender", "--for", application, "--tables", "texture", "-o", str(file), "-q"], check=True)
+        (beside,) = [*scratch.glob("*nodes.ktx2"), *scratch.glob("*nodes.cs"), *scratch.glob("*nodes.exr")]
+        texels = scratch / f"{application}.texels"
+        read(beside, dawn.modules).tofile(texels)
+        beside.unlink()
+        step = prepare(file.read_text(), f"{application}_lut", scratch)
+        step["bindings"] = ["picture", "sampler", {"texels": str(texels), "size": [57, 57, 57]}]
+        steps.append(step | {"picture": str(scratch / "scene.half"), "size": SIZE, "out": str(out)})
+        drawn[application, "agx_blender, a texture"] = out, display
+    subprocess.run([command, "shader", "agx_blender", "--for", "resolve", "--tables", "texture", "-o", "lut.dctl", "-q"], check=True, cwd=scratch)
+    shown = resolve_with_lut((scratch / "lut.dctl").read_text(), scratch, scene)
+    np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(scratch / "lut.out")
+    drawn["resolve", "agx_blender, a texture"] = scratch / "lut.out", "rec1886"
     print(f"{dawn.run(steps)}, pocl")
     for (application, operator), (out, display) in drawn.items():
         shown = np.fromfile(out, np.float32).reshape(-1, 4)[:, :3].astype(float)
-        expected = reference(command, operator, scene, "--display", display, "--exposure", str(STOPS))
+        stops, bound = (0, HALF_NODES) if "texture" in operator else (STOPS, BOUNDS[operator])
+        expected = reference(command, operator.split(",")[0], scene, "--display", display, "--exposure", str(stops))
         to_light = {"linear": lambda x: x, "srgb": None, "rec1886": lambda x: x**2.4}[display]
         codes = [srgb_encode(np.clip(to_light(x), 0, None)) if to_light else x for x in (shown, expected)]
         error = np.abs(codes[0] - codes[1]).max()
-        report.bound(f"{application} {operator}", error, BOUNDS[operator])
+        report.bound(f"{application} {operator}", error, bound)
         report.check(f"{application} {operator}: it is a picture", codes[1].std() > 0.1)
         if pictures:
             write_png(codes[0], pictures / f"{application}_{operator}.png")

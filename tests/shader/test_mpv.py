@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hook that `tonewright shader --for mpv` writes, in mpv on a virtual screen, beside `tonewright apply`.
+"""The hook that `tonewright shader --for mpv` writes, in mpv on a virtual screen, beside `tonewright apply`; AgX of Blender
+with its 3D LUT in the hook.
 
     python3 -m pytest tests/shader/test_mpv.py --tonewright build/release/bin/tonewright
 """
@@ -7,6 +8,7 @@
 import subprocess
 
 import numpy as np
+import pytest
 from pictures import need_program, read_rgb
 
 # The window holds codes of 8 bits, rounded once.
@@ -21,7 +23,8 @@ end)
 """
 
 
-def test_hook(report, command, scratch):
+@pytest.mark.parametrize("operator", ["agx_threejs", "agx_blender"])
+def test_hook(report, command, scratch, operator):
     for program, package in (("mpv", "mpv"), ("xvfb-run", "xvfb"), ("oiiotool", "openimageio-tools")):
         need_program(program, package)
 
@@ -32,8 +35,8 @@ def test_hook(report, command, scratch):
     run(command, "chart", "-o", "chart.exr", "-q")
     run("oiiotool", "chart.exr", "--resize:filter=box", "640x360", "--ch", "R,G,B", "--maxc", "0", "-d", "half", "-o", "scene.exr")
     width, height = 640, 360
-    run(command, "shader", "agx_threejs", "--for", "mpv", "-o", "hook.glsl", "-q")
-    run(command, "apply", "scene.exr", "right.png", "-d", "uint16", "--operator", "agx_threejs", "-q")
+    run(command, "shader", operator, "--for", "mpv", "-o", "hook.glsl", "-q")
+    run(command, "apply", "scene.exr", "right.png", "-d", "uint16", "--operator", operator, "-q")
     run("xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", "mpv", "--no-config", "--vo=gpu", "--gpu-api=opengl", "--gpu-sw",
         "--no-audio", "--keep-open", "--pause", "--osd-level=0", f"--geometry={width}x{height}", "--no-border", "--dither=no",
         "--vf=format=gamma=srgb", "--glsl-shader=hook.glsl", "--script=shot.lua", "scene.exr")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,8 @@ struct ShaderLanguageInfo {
     std::string id;         // glsl-es
     std::string title;      // "GLSL ES 3.00 (WebGL 2)"
     std::string extension;  // of a file
-    /// True if views with a 3D LUT can be written.
+    /// True if it holds any 3D LUT, in a texture or an array. Otherwise the text computes the nodes
+    /// of 3D LUTs that have a formula.
     bool holds_grids = false;
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<ShaderLanguageInfo>& shader_languages();
@@ -44,7 +46,7 @@ struct ShaderApplication {
     ShaderLanguage language;
     /// Output of the function for it: `linear`, or a display.
     std::string display;
-    /// Instructions for the user; one sentence or two.
+    /// Instructions for the user: the application's own tone mapper, and the place of exposure.
     std::string steps;
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<ShaderApplication>& shader_applications();
@@ -55,9 +57,13 @@ struct ShaderApplication {
 
 /// Storage of tables and 3D LUTs.
 enum class ShaderTables : unsigned char {
-    by_size,  // arrays, but textures for more numbers than a text should have
+    /// Arrays, but textures for more numbers than a text should have. Where neither is possible,
+    /// or a user would have to connect a texture by hand, the text computes nodes of 3D LUTs.
+    by_size,
     texture,
     array,
+    /// The text computes the nodes of 3D LUTs by their formula; 1D tables as by_size.
+    formula,
 };
 
 /// Writing of curves of one number.
@@ -121,13 +127,21 @@ struct ShaderErrors {
     double vulkan_estimate = kInfinity;
 };
 
+/// A file beside the text, which the application reads.
+struct ShaderFile {
+    std::string name;
+    std::string contents;
+};
+
 /// Source text: comments, helper functions, and last the function itself.
 struct Shader {
     /// tw_<id>[_preset][_look], followed by _inverse or _encoded.
     std::string function;
     std::string text;
     ShaderErrors errors;
+    /// For a language. A file for an application has them in its text, or in `files`.
     std::vector<ShaderTexture> textures = {};
+    std::vector<ShaderFile> files = {};
 };
 
 /// @throws Error  as write_shader()
@@ -141,15 +155,22 @@ struct Shader {
 ///
 /// @throws Error  a local operator; a uniform that the operator does not have, that is not live, or
 ///                that is named twice; an inverse with uniforms other than the exposure, or of an
-///                operator without one; tables or a 3D LUT, if the language has neither textures
-///                nor arrays of that size
+///                operator without one; tables, or a 3D LUT without a formula, if the target has
+///                neither textures nor arrays of that size
 /// @param errors  the result of measure_shader() for the same request in any language; null:
-///                measures
+///                measures. Texts that compute nodes, or have them in half floats, are measured
+///                for themselves.
 [[nodiscard]] TONEWRIGHT_API Shader write_shader(const ShaderRequest& request,
                                                  const ShaderErrors* errors = nullptr);
 
 /// True if the view reads a 3D LUT.
 [[nodiscard]] TONEWRIGHT_API bool reads_grid(const View& view);
+
+/// Largest error of a node of the view's 3D LUTs in a file for the application: 0 without one and
+/// if the text computes them, 2^-12 in half floats. Empty if the application cannot hold them, and
+/// they have no formula.
+[[nodiscard]] TONEWRIGHT_API std::optional<double> node_error(const ShaderApplication& application,
+                                                              const View& view);
 
 /// The name of the function that write_shader() writes.
 [[nodiscard]] TONEWRIGHT_API std::string shader_function_name(const ShaderRequest& request);

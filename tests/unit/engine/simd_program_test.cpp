@@ -20,7 +20,7 @@
 #include "base/format_number.h"
 #include "base/random.h"
 #include "full_counts.h"
-#include "lut/half_value.h"
+#include "base/half_value.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"

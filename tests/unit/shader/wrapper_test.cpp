@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "shader/grid_form.h"
 #include "tonewright/error.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
@@ -44,13 +45,27 @@ TEST(ShaderApplications, AreFoundByAnySpelling) {
 TEST(Wrapper, HoldsTheFunctionAndEveryArgumentAndNoMarks) {
     const std::vector<ShaderArgument> arguments = {{"my_dial", "How much of it.", 0.75, 0.125, 8}};
     for (const ShaderApplication& application : shader_applications()) {
-        const Shader shader = shader_of(application);
-        const std::string without = wrap(application, shader, {});
-        const std::string with = wrap(application, shader, arguments);
+        Shader shader = shader_of(application);
+        EXPECT_EQ(second_language(application).has_value(), application.id == "threejs-tsl");
+        const std::string without = wrap(application, shader, {}, "").text;
+        const std::string with = wrap(application, shader, arguments, "").text;
+        shader.textures.push_back({"my_nodes", {2, 2, 2}, std::vector<float>(32, 0.5F)});
+        if (grid_form(application)) {
+            const Shader wrapped = wrap(application, shader, arguments, "");
+            EXPECT_TRUE(wrapped.textures.empty());
+            EXPECT_EQ(wrapped.files.empty(), !grid_form(application)->contents) << application.id;
+            if (grid_form(application)->data) {
+                // 0.5 is 0x3800: as little-endian bytes in base64 and in hexadecimal digits.
+                EXPECT_TRUE(wrapped.text.find("ADgAOAA4ADg") != std::string::npos ||
+                            wrapped.text.find("0038003800380038") != std::string::npos)
+                    << application.id;
+            }
+        }
         for (const std::string& text : {without, with}) {
             EXPECT_NE(text.find(shader.function), std::string::npos) << application.id;
-            for (const char* mark : {"@function", "@call", "@arguments", "@declarations", "@[",
-                                     "@]", "@header", "@name", "@value"})
+            for (const char* mark :
+                 {"@function", "@call", "@arguments", "@declarations", "@[", "@]", "@(", "@)",
+                  "@grids", "@bindings", "@other", "@header", "@name", "@value"})
                 EXPECT_EQ(text.find(mark), std::string::npos) << application.id << " " << mark;
         }
         EXPECT_EQ(without.find("my_dial"), std::string::npos) << application.id;

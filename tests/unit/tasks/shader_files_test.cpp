@@ -26,7 +26,7 @@ TEST(ShaderFiles, WritesTheTextOfWriteShader) {
     EXPECT_EQ(result.shader.text, write_shader(request).text);
     EXPECT_EQ(read(folder / "hable.glsl"), result.shader.text);
     EXPECT_FALSE(result.is_double);
-    EXPECT_TRUE(result.textures.empty());
+    EXPECT_TRUE(result.beside.empty());
     EXPECT_EQ(write_shader_files(request, "", {}).shader.text, result.shader.text) << "no file";
 }
 
@@ -35,11 +35,11 @@ TEST(ShaderFiles, TexturesLieBesideTheText) {
     ShaderRequest request = request_for("aces_20");
     request.tables = ShaderTables::texture;
     const ShaderResult result = write_shader_files(request, folder / "aces.glsl", {});
-    ASSERT_EQ(result.textures.size(), result.shader.textures.size());
-    ASSERT_FALSE(result.textures.empty());
-    EXPECT_EQ(read(result.textures[0]).size(), 4 * result.shader.textures[0].rgba.size());
-    EXPECT_EQ(folder.files().size(), result.textures.size() + 1);
-    EXPECT_NE(error_of([&] { (void)write_shader_files(request, "", {}); }).find("has a texture"),
+    ASSERT_EQ(result.beside.size(), result.shader.textures.size());
+    ASSERT_FALSE(result.beside.empty());
+    EXPECT_EQ(read(result.beside[0]).size(), 4 * result.shader.textures[0].rgba.size());
+    EXPECT_EQ(folder.files().size(), result.beside.size() + 1);
+    EXPECT_NE(error_of([&] { (void)write_shader_files(request, "", {}); }).find("reads the file tw_aces_20"),
               std::string::npos);
 }
 

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shader/grid_form.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "base/base64.h"
+#include "base/half_value.h"
+#include "expr/nodes.h"
+#include "shader/float_form.h"
+#include "tonewright/error.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+void append(std::string& bytes, std::uint64_t value, int size) {
+    for (int i = 0; i < size; ++i)
+        bytes += static_cast<char>(static_cast<unsigned char>(value >> (8 * i)));
+}
+void append_half(std::string& bytes, float value) {
+    append(bytes, half_bits(static_cast<double>(value)), 2);
+}
+
+/// Little-endian RGBA, x running fastest.
+std::string halves(const ShaderTexture& texture) {
+    std::string bytes;
+    bytes.reserve(2 * texture.rgba.size());
+    for (const float value : texture.rgba)
+        append_half(bytes, value);
+    return bytes;
+}
+
+std::string in_base64(const ShaderTexture& texture) { return base64(halves(texture)); }
+
+std::string in_hex(const ShaderTexture& texture) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string text;
+    for (const char c : halves(texture)) {
+        const auto byte = static_cast<unsigned char>(c);
+        text += kDigits[byte >> 4U];
+        text += kDigits[byte & 15U];
+    }
+    return text;
+}
+
+/// Red is x, which runs fastest.
+std::string cube_file(const ShaderTexture& texture) {
+    std::string text = fmt::format("TITLE \"{}\"\nLUT_3D_SIZE {}\n", texture.name, texture.size[0]);
+    for (std::size_t i = 0; i < texture.rgba.size(); i += 4) {
+        fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g} {:.9g}\n", texture.rgba[i],
+                       texture.rgba[i + 1], texture.rgba[i + 2]);
+    }
+    return text;
+}
+
+/// KTX 2.0 (Khronos), one level of VK_FORMAT_R16G16B16A16_SFLOAT, without supercompression.
+std::string ktx2_file(const ShaderTexture& texture) {
+    constexpr std::uint32_t kFormat = 97;
+    constexpr std::uint32_t kDescriptor = 104;  // begins after the header and the index
+    constexpr std::uint32_t kSamples = 4;
+    constexpr std::uint32_t kDescriptorSize = 4 + 24 + 16 * kSamples;
+    constexpr std::uint32_t kKeys = kDescriptor + kDescriptorSize;
+    const std::string writer("KTXwriter\0Tonewright " TONEWRIGHT_VERSION,
+                             sizeof("KTXwriter\0Tonewright " TONEWRIGHT_VERSION));
+    std::string keys;
+    append(keys, writer.size(), 4);
+    keys += writer;
+    keys.resize((keys.size() + 3) / 4 * 4);
+    const std::string texels = halves(texture);
+    const std::size_t begin = (kKeys + keys.size() + 7) / 8 * 8;
+    std::string file("\xABKTX 20\xBB\r\n\x1A\n", 12);
+    for (const std::uint32_t number :
+         {kFormat, 2U, static_cast<std::uint32_t>(texture.size[0]),
+          static_cast<std::uint32_t>(texture.size[1]), static_cast<std::uint32_t>(texture.size[2]),
+          0U, 1U, 1U, 0U, kDescriptor, kDescriptorSize, kKeys,
+          static_cast<std::uint32_t>(keys.size())})
+        append(file, number, 4);
+    append(file, 0, 16);  // no global data of a supercompression
+    for (const std::size_t number : {begin, texels.size(), texels.size()})
+        append(file, number, 8);
+    // A basic descriptor block: linear RGB, Rec.709, a texel of 8 bytes, four signed floats.
+    append(file, kDescriptorSize, 4);
+    append(file, 0, 4);
+    append(file, 2, 2);
+    append(file, kDescriptorSize - 4, 2);
+    append(file, 0x00010101, 4);
+    append(file, 0, 4);
+    append(file, 8, 8);
+    for (std::uint32_t i = 0; i < kSamples; ++i) {
+        constexpr std::uint32_t kSignedFloat = 0xC0;
+        append(file, 16 * i, 2);
+        append(file, 15, 1);
+        append(file, kSignedFloat | (i == 3 ? 15 : i), 1);
+        append(file, 0, 4);
+        append(file, 0xBF800000, 4);
+        append(file, 0x3F800000, 4);
+    }
+    file += keys;
+    file.resize(begin);
+    return file + texels;
+}
+
+/// OpenEXR, uncompressed half floats: node x, y, z at column x and row y + height * z.
+std::string exr_file(const ShaderTexture& texture) {
+    const auto width = static_cast<std::uint32_t>(texture.size[0]);
+    const auto height = static_cast<std::uint32_t>(texture.size[1] * texture.size[2]);
+    std::string file("\x76\x2f\x31\x01\x02\0\0\0", 8);
+    const auto attribute = [&](std::string_view name, std::string_view type,
+                               const std::string& value) {
+        file.append(name).append(1, '\0').append(type).append(1, '\0');
+        append(file, value.size(), 4);
+        file += value;
+    };
+    std::string channels;
+    for (const char channel : {'A', 'B', 'G', 'R'}) {
+        channels += channel;
+        channels += '\0';
+        append(channels, 1, 4);  // half
+        append(channels, 0, 4);
+        append(channels, 1, 4);
+        append(channels, 1, 4);
+    }
+    channels += '\0';
+    std::string window;
+    for (const std::uint32_t number : {0U, 0U, width - 1, height - 1})
+        append(window, number, 4);
+    std::string one;
+    append(one, 0x3F800000, 4);
+    attribute("channels", "chlist", channels);
+    attribute("compression", "compression", std::string(1, '\0'));
+    attribute("dataWindow", "box2i", window);
+    attribute("displayWindow", "box2i", window);
+    attribute("lineOrder", "lineOrder", std::string(1, '\0'));
+    attribute("pixelAspectRatio", "float", one);
+    attribute("screenWindowCenter", "v2f", std::string(8, '\0'));
+    attribute("screenWindowWidth", "float", one);
+    file += '\0';
+    const std::uint64_t row = 8 + 8 * std::uint64_t{width};
+    const std::uint64_t begin = file.size() + 8 * std::uint64_t{height};
+    for (std::uint64_t y = 0; y < height; ++y)
+        append(file, begin + y * row, 8);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        append(file, y, 4);
+        append(file, row - 8, 4);
+        for (const std::size_t channel : {3, 2, 1, 0}) {
+            for (std::size_t x = 0; x < width; ++x)
+                append_half(file, texture.rgba[4 * (std::size_t{y} * width + x) + channel]);
+        }
+    }
+    return file;
+}
+
+/// An Editor script, because Unity imports no volume of half floats by itself.
+std::string unity_script(const ShaderTexture& texture) {
+    return fmt::format(
+        R"(// Put this file into a folder `Editor`. The menu Tonewright > {0} makes Assets/{0}.asset.
+using UnityEditor;
+using UnityEngine;
+
+static class {0} {{
+    [MenuItem("Tonewright/{0}")]
+    static void Make() {{
+        var texture = new Texture3D({1}, {1}, {1}, TextureFormat.RGBAHalf, false) {{
+            filterMode = FilterMode.Point, wrapMode = TextureWrapMode.Clamp
+        }};
+        texture.SetPixelData(System.Convert.FromBase64String(Data), 0);
+        texture.Apply(false);
+        AssetDatabase.CreateAsset(texture, "Assets/{0}.asset");
+    }}
+
+    const string Data = "{2}";
+}}
+)",
+        texture.name, texture.size[0], in_base64(texture));
+}
+
+constexpr GridForm kForms[] = {
+    // A strip, because OutputPass compiles GLSL ES 1.00, which has no 3D textures.
+    {.application = "threejs",
+     .is_default = true,
+     .declaration = "uniform sampler2D {name}; // node x, y, z in column x, row y + {edge} * z\n",
+     .fetch = "texture2D({name}, (vec2({x}, {y} + {edge} * ({z})) + 0.5) / vec2({edge}, {edge} * "
+              "{edge}))",
+     .color_of_fetch = ".rgb",
+     .lines = "    @texture: [@edge, '@data'],\n",
+     .data = in_base64},
+    {.application = "threejs-tsl",
+     .is_default = true,
+     .declaration = "",
+     .fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0)",
+     .color_of_fetch = ".rgb",
+     .lines = "    @texture: [@edge, '@data'],\n",
+     .data = in_base64},
+    {.application = "bevy",
+     .is_default = false,
+     .declaration = "@group(0) @binding({binding}) var {name}: texture_3d<f32>;\n",
+     .fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0)",
+     .color_of_fetch = ".rgb",
+     .first_binding = 2,
+     .note = "// Its file is {name}.ktx2: Handle<Image> with #[texture({binding}, dimension = "
+             "\"3d\", filterable = false)].\n",
+     .suffix = ".ktx2",
+     .contents = ktx2_file},
+    {.application = "godot",
+     .is_default = true,
+     .declaration = "layout(set = 0, binding = {binding}) uniform sampler3D {name};\n",
+     .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0)",
+     .color_of_fetch = ".rgb",
+     .first_binding = 1,
+     .lines = "    [@edge, \"@data\"],\n",
+     .data = in_base64},
+    {.application = "unity",
+     .is_default = false,
+     .declaration = "Texture3D<float4> {name};\n",
+     .fetch = "{name}.Load(int4({x}, {y}, {z}, 0))",
+     .color_of_fetch = ".rgb",
+     .note = "// {name}.cs makes the asset of it: give it to the material.\n",
+     .lines = "    @texture(\"@texture.asset\", 3D) = \"\" {}\n",
+     .suffix = ".cs",
+     .contents = unity_script},
+    {.application = "unreal",
+     .is_default = false,
+     .declaration = "",
+     .fetch = "{name}.Load(int4({x}, {y}, {z}, 0))",
+     .color_of_fetch = ".rgb",
+     .parameter = "Texture3D {name}",
+     .note =
+         "// Its file is {name}.exr, a strip: make a Volume Texture of it, with tiles of {edge} "
+         "x {edge}\n// and the compression HDR.\n",
+     .lines = "// @texture is another input of the node: a Texture Object of the Volume Texture\n",
+     .suffix = ".exr",
+     .contents = exr_file},
+    {.application = "mpv",
+     .is_default = true,
+     .declaration = "",
+     .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0)",
+     .color_of_fetch = ".rgb",
+     .lines = "//!TEXTURE @texture\n//!SIZE @edge @edge @edge\n//!FORMAT rgba16hf\n"
+              "//!FILTER NEAREST\n//!BORDER CLAMP\n@data\n\n",
+     .bindings = "//!BIND @texture\n",
+     .data = in_hex},
+    {.application = "reshade",
+     .is_default = true,
+     .declaration = "texture3D {name}_texture < source = \"{name}.cube\"; > {{\n"
+                    "    Width = {edge};\n    Height = {edge};\n    Depth = {edge};\n"
+                    "    Format = RGBA16F;\n}};\n"
+                    "sampler3D {name} {{\n    Texture = {name}_texture;\n    MinFilter = POINT;\n"
+                    "    MagFilter = POINT;\n    MipFilter = POINT;\n}};\n",
+     .fetch = "tex3Dfetch({name}, int3({x}, {y}, {z}))",
+     .color_of_fetch = ".rgb",
+     .note = "// Its file is {name}.cube, for the folder reshade-shaders/Textures; ReShade 6.0 and "
+             "later read it.\n",
+     .suffix = ".cube",
+     .contents = cube_file},
+    {.application = "resolve",
+     .is_default = true,
+     .declaration = "DEFINE_LUT({name}, {name}.cube)\n",
+     .fetch = "APPLY_LUT(({x}) / {last}.0f, ({y}) / {last}.0f, ({z}) / {last}.0f, {name})",
+     .color_of_fetch = "",
+     .note =
+         "// Its file is {name}.cube, for the same folder. Only nodes are read, so the project's "
+         "interpolation\n// of 3D LUTs does not matter.\n",
+     .suffix = ".cube",
+     .contents = cube_file},
+    {.application = "nuke",
+     .is_default = false,
+     .declaration = "float3 {name}_at(int x, int y, int z) {{\n"
+                    "    float4 node = {name}(x, {edge} * {edge} - 1 - (y + {edge} * z));\n"
+                    "    return float3(node.x, node.y, node.z);\n}}\n",
+     .fetch = "{name}_at({x}, {y}, {z})",
+     .color_of_fetch = "",
+     .note = "// It is the second input: a Read node of {name}.exr, raw data.\n",
+     .lines = "    Image<eRead, eAccessRandom, eEdgeClamped> @texture;\n",
+     .suffix = ".exr",
+     .contents = exr_file},
+};
+
+/// Applies f to each Grid of the program once.
+template <class F>
+void for_each_grid(const ShaderProgram& program, const F& f) {
+    std::map<const Grid*, std::shared_ptr<const Grid>> grids;
+    for (const Expr& e : nodes_of(compose(program))) {
+        if (e.op() == ExprOp::grid) grids.emplace(e.grid().get(), e.grid());
+    }
+    for (const auto& entry : grids)
+        f(entry.second);
+}
+
+std::vector<double> computed_nodes(const Grid& grid) {
+    ShaderProgram program;
+    program.colors.push_back({"node", {}, node_formula(grid)});
+    program.steps.emplace_back(ColorStep{0});
+    const FloatRun run(program);
+    const auto edge = static_cast<std::size_t>(grid.edge());
+    const auto place = [&](std::size_t i) {
+        return static_cast<float>(i % edge) / static_cast<float>(edge - 1);
+    };
+    std::vector<float> rgb;
+    rgb.reserve(3 * edge * edge * edge);
+    for (std::size_t i = 0; i < edge * edge * edge; ++i) {
+        for (const std::size_t digit : {i / edge / edge, i / edge, i})
+            rgb.push_back(place(digit));
+    }
+    run.run_rgb(rgb.data(), rgb.data(), rgb.size() / 3);
+    return {rgb.begin(), rgb.end()};
+}
+
+std::vector<double> half_nodes(const Grid& grid) {
+    std::vector<double> nodes = grid.nodes();
+    for (double& x : nodes)
+        x = half_value(half_bits(static_cast<double>(static_cast<float>(x))));
+    return nodes;
+}
+
+}  // namespace
+
+const GridForm* grid_form(const ShaderApplication& application) {
+    const auto* const found =
+        std::find_if(std::begin(kForms), std::end(kForms),
+                     [&](const GridForm& form) { return form.application == application.id; });
+    return found == std::end(kForms) ? nullptr : found;
+}
+
+LanguageFacts language_for(const ShaderApplication& application) {
+    LanguageFacts language = facts_of(application.language);
+    const GridForm* const form = grid_form(application);
+    language.has_textures = form != nullptr;
+    if (!form) return language;
+    language.prefers_formula = !form->is_default;
+    language.texel = "half floats";
+    language.texture = form->declaration;
+    language.texture_parameter = form->parameter;
+    language.first_binding = form->first_binding;
+    language.fetch = form->fetch;
+    language.color_of_fetch = form->color_of_fetch;
+    language.loader = form->note;
+    language.holds_halves = true;
+    return language;
+}
+
+GridSource grid_source(const Grid& grid, const LanguageFacts& language, ShaderTables tables,
+                       const std::string& function) {
+    const std::size_t numbers =
+        3 * static_cast<std::size_t>(grid.edge() * grid.edge() * grid.edge());
+    const bool fits = numbers <= language.largest_array;
+    constexpr const char* kTargets =
+        "a language with textures (glsl, glsl-es, hlsl, wgsl) or c, or a LUT file for the same "
+        "application: <<bake>>";
+    const auto refuse = [&](const std::string& expected) {
+        return Error(
+            Problem{.value = fmt::format("{} reads a 3D LUT of {}^3 nodes{}", function, grid.edge(),
+                                         grid.has_formula() ? "" : " without a formula"),
+                    .expected = expected});
+    };
+    switch (tables) {
+        case ShaderTables::formula:
+            if (grid.has_formula()) return GridSource::formula;
+            throw refuse("another kind of <<tables>>");
+        case ShaderTables::texture:
+            if (language.has_textures) return GridSource::texture;
+            throw refuse(grid.has_formula() ? "<<tables=formula>>: no texture is possible there"
+                                            : kTargets);
+        case ShaderTables::array:
+            if (fits) return GridSource::array;
+            throw refuse(
+                fmt::format("<<tables=formula>> or texture: an array should hold at most "
+                            "{} numbers, not {}",
+                            language.largest_array, numbers));
+        case ShaderTables::by_size:
+            break;
+    }
+    if (fits) return GridSource::array;
+    if (language.has_textures && !(language.prefers_formula && grid.has_formula()))
+        return GridSource::texture;
+    if (grid.has_formula()) return GridSource::formula;
+    throw refuse(kTargets);
+}
+
+std::array<Expr, 3> node_formula(const Grid& grid) {
+    FloatForm form({{0, 1}, {0, 1}, {0, 1}}, {});
+    const std::vector<Expr> exact = grid.formula();
+    return {form(exact[0]), form(exact[1]), form(exact[2])};
+}
+
+GridsInText grids_in_text(const ShaderProgram& program, const LanguageFacts& language,
+                          ShaderTables tables, const std::string& function) {
+    GridsInText result;
+    for_each_grid(program, [&](const std::shared_ptr<const Grid>& grid) {
+        const GridSource source = grid_source(*grid, language, tables, function);
+        const bool is_half = source == GridSource::texture && language.holds_halves;
+        if (source != GridSource::formula && !is_half) return;
+        result.emplace(grid.get(), is_half
+                                       ? std::make_shared<const Grid>(
+                                             grid->edge(), [grid] { return half_nodes(*grid); })
+                                       : std::make_shared<const Grid>(
+                                             grid->edge(), [grid] { return computed_nodes(*grid); },
+                                             [grid] { return grid->formula(); }));
+    });
+    return result;
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -13,6 +13,7 @@
 
 #include "base/base64.h"
 #include "base/half_value.h"
+#include "base/little_endian.h"
 #include "expr/nodes.h"
 #include "shader/float_form.h"
 #include "tonewright/error.h"
@@ -42,7 +43,7 @@ std::string in_base64(const ShaderTexture& texture) { return base64(halves(textu
 std::string in_hex(const ShaderTexture& texture) {
     constexpr std::string_view kDigits = "0123456789abcdef";
     std::string text;
-    for (const char c : halves(texture)) {
+    for (const char c : little_endian_bytes(texture.rgba)) {
         const auto byte = static_cast<unsigned char>(c);
         text += kDigits[byte >> 4U];
         text += kDigits[byte & 15U];
@@ -185,6 +186,7 @@ constexpr GridForm kForms[] = {
     // A strip, because OutputPass compiles GLSL ES 1.00, which has no 3D textures.
     {.application = "threejs",
      .is_default = true,
+     .holds_halves = true,
      .declaration = "uniform sampler2D {name}; // node x, y, z in column x, row y + {edge} * z\n",
      .fetch = "texture2D({name}, (vec2({x}, {y} + {edge} * ({z})) + 0.5) / vec2({edge}, {edge} * "
               "{edge}))",
@@ -193,6 +195,7 @@ constexpr GridForm kForms[] = {
      .data = in_base64},
     {.application = "threejs-tsl",
      .is_default = true,
+     .holds_halves = true,
      .declaration = "",
      .fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0)",
      .color_of_fetch = ".rgb",
@@ -200,6 +203,7 @@ constexpr GridForm kForms[] = {
      .data = in_base64},
     {.application = "bevy",
      .is_default = false,
+     .holds_halves = true,
      .declaration = "@group(0) @binding({binding}) var {name}: texture_3d<f32>;\n",
      .fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0)",
      .color_of_fetch = ".rgb",
@@ -210,6 +214,7 @@ constexpr GridForm kForms[] = {
      .contents = ktx2_file},
     {.application = "godot",
      .is_default = true,
+     .holds_halves = true,
      .declaration = "layout(set = 0, binding = {binding}) uniform sampler3D {name};\n",
      .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0)",
      .color_of_fetch = ".rgb",
@@ -218,6 +223,7 @@ constexpr GridForm kForms[] = {
      .data = in_base64},
     {.application = "unity",
      .is_default = false,
+     .holds_halves = true,
      .declaration = "Texture3D<float4> {name};\n",
      .fetch = "{name}.Load(int4({x}, {y}, {z}, 0))",
      .color_of_fetch = ".rgb",
@@ -227,6 +233,7 @@ constexpr GridForm kForms[] = {
      .contents = unity_script},
     {.application = "unreal",
      .is_default = false,
+     .holds_halves = true,
      .declaration = "",
      .fetch = "{name}.Load(int4({x}, {y}, {z}, 0))",
      .color_of_fetch = ".rgb",
@@ -237,17 +244,20 @@ constexpr GridForm kForms[] = {
      .lines = "// @texture is another input of the node: a Texture Object of the Volume Texture\n",
      .suffix = ".exr",
      .contents = exr_file},
+    // mpv's own renderer has no name for half floats in its data.
     {.application = "mpv",
      .is_default = true,
+     .holds_halves = false,
      .declaration = "",
      .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0)",
      .color_of_fetch = ".rgb",
-     .lines = "//!TEXTURE @texture\n//!SIZE @edge @edge @edge\n//!FORMAT rgba16hf\n"
+     .lines = "//!TEXTURE @texture\n//!SIZE @edge @edge @edge\n//!FORMAT rgba32f\n"
               "//!FILTER NEAREST\n//!BORDER CLAMP\n@data\n\n",
      .bindings = "//!BIND @texture\n",
      .data = in_hex},
     {.application = "reshade",
      .is_default = true,
+     .holds_halves = true,
      .declaration = "texture3D {name}_texture < source = \"{name}.cube\"; > {{\n"
                     "    Width = {edge};\n    Height = {edge};\n    Depth = {edge};\n"
                     "    Format = RGBA16F;\n}};\n"
@@ -261,6 +271,7 @@ constexpr GridForm kForms[] = {
      .contents = cube_file},
     {.application = "resolve",
      .is_default = true,
+     .holds_halves = true,
      .declaration = "DEFINE_LUT({name}, {name}.cube)\n",
      .fetch = "APPLY_LUT(({x}) / {last}.0f, ({y}) / {last}.0f, ({z}) / {last}.0f, {name})",
      .color_of_fetch = "",
@@ -271,6 +282,7 @@ constexpr GridForm kForms[] = {
      .contents = cube_file},
     {.application = "nuke",
      .is_default = false,
+     .holds_halves = true,
      .declaration = "float3 {name}_at(int x, int y, int z) {{\n"
                     "    float4 node = {name}(x, {edge} * {edge} - 1 - (y + {edge} * z));\n"
                     "    return float3(node.x, node.y, node.z);\n}}\n",
@@ -334,14 +346,15 @@ LanguageFacts language_for(const ShaderApplication& application) {
     language.has_textures = form != nullptr;
     if (!form) return language;
     language.prefers_formula = !form->is_default;
-    language.texel = "half floats";
+    if (form->holds_halves) language.texel = "half floats";
     language.texture = form->declaration;
     language.texture_parameter = form->parameter;
     language.first_binding = form->first_binding;
     language.fetch = form->fetch;
     language.color_of_fetch = form->color_of_fetch;
     language.loader = form->note;
-    language.holds_halves = true;
+    language.is_for_grids = true;
+    language.holds_halves = form->holds_halves;
     return language;
 }
 

@@ -13,7 +13,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A texture of a 3D LUT in the file of an application. Patterns use fmt with {name}, {edge} and
-/// {binding}; the fetch of a node also {x}, {y}, {z}, where x runs fastest. Texels are half floats.
+/// {binding}; the fetch of a node also {x}, {y}, {z}, where x runs fastest.
 /// The text fetches nodes without a filter and interpolates them itself, because filters of GPUs
 /// have 8-bit weights and are not tetrahedral.
 struct GridForm {
@@ -21,6 +21,7 @@ struct GridForm {
     /// False if the user would have to connect the texture by hand; the text then computes nodes
     /// unless textures are asked for.
     bool is_default;
+    bool holds_halves;  // instead of 32-bit floats
     const char* declaration;
     const char* fetch;
     const char* color_of_fetch;

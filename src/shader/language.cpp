@@ -36,6 +36,7 @@ constexpr LanguageFacts kGlsl = {
     .array = "const float {name}[{count}] = float[{count}](\n{values});",
     .has_textures = true,
     .prefers_formula = false,
+    .is_for_grids = false,
     .holds_halves = false,
     .texel = "32-bit float",
     .texture = "uniform highp sampler3D {name};\n",

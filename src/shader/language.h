@@ -32,7 +32,8 @@ struct LanguageFacts {
     const char* array;       // {name}, {count}, {values}
     bool has_textures;
     bool prefers_formula;  // to textures of 3D LUTs
-    bool holds_halves;     // as texels of 3D LUTs
+    bool is_for_grids;     // textures hold nodes of 3D LUTs, but no 1D tables
+    bool holds_halves;     // as texels
     const char* texel;     // in words
     /// Declaration of a 3D texture with {name} and {binding}.
     const char* texture;

@@ -207,8 +207,7 @@ class ProgramPrinter {
     /// True for a 1D table that becomes a texture. `formula` is about nodes of 3D LUTs alone.
     /// @throws Error  if neither an array nor a texture can hold that many
     [[nodiscard]] bool is_texture(const std::string& what, std::size_t numbers) const {
-        // A texture of half floats is for 3D LUTs.
-        const bool has_texture = language_.has_textures && !language_.holds_halves;
+        const bool has_texture = language_.has_textures && !language_.is_for_grids;
         const bool is_small = numbers <= language_.largest_array;
         const bool result = tables_ == ShaderTables::by_size || tables_ == ShaderTables::formula
                                 ? !is_small

@@ -534,7 +534,7 @@ std::optional<double> node_error(const ShaderApplication& application, const Vie
         const bool has_formula = e.grid()->has_formula();
         if (!has_formula && !language.has_textures) return std::nullopt;
         // Nodes are code values of at most 1; half a step of a half float.
-        if (language.has_textures && !(has_formula && language.prefers_formula)) error = 0x1p-12;
+        if (language.holds_halves && !(has_formula && language.prefers_formula)) error = 0x1p-12;
     }
     return error;
 }

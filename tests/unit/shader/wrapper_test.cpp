@@ -55,9 +55,10 @@ TEST(Wrapper, HoldsTheFunctionAndEveryArgumentAndNoMarks) {
             EXPECT_TRUE(wrapped.textures.empty());
             EXPECT_EQ(wrapped.files.empty(), !grid_form(application)->contents) << application.id;
             if (grid_form(application)->data) {
-                // 0.5 is 0x3800: as little-endian bytes in base64 and in hexadecimal digits.
+                // 0.5 is 0x3800 in a half float and 0x3F000000 in a float: little-endian bytes in
+                // base64 and in hexadecimal digits.
                 EXPECT_TRUE(wrapped.text.find("ADgAOAA4ADg") != std::string::npos ||
-                            wrapped.text.find("0038003800380038") != std::string::npos)
+                            wrapped.text.find("0000003f0000003f") != std::string::npos)
                     << application.id;
             }
         }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include "base/strings.h"
 #include "shader/grid_form.h"
@@ -346,6 +348,21 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return text;
 }
 
+/// Text for a string of the application's language: a template of JavaScript, or a string of
+/// GDScript. Comments may hold any character.
+std::string in_literal(const ShaderApplication& application, std::string text) {
+    const std::string_view special = application.extension == ".js"   ? "\\`$"
+                                     : application.extension == ".gd" ? "\\\""
+                                                                      : "";
+    if (special.empty()) return text;
+    std::string quoted;
+    for (const char c : text) {
+        if (special.find(c) != std::string_view::npos) quoted += '\\';
+        quoted += c;
+    }
+    return quoted;
+}
+
 /// Removes the marks, and the text between them unless it is wanted.
 std::string only_if(bool is_wanted, std::string text, std::string_view begin,
                     std::string_view end) {
@@ -459,7 +476,7 @@ Shader wrap(const ShaderApplication& application, Shader shader,
         if (form.contents)
             shader.files.push_back({texture.name + form.suffix, form.contents(texture)});
     }
-    std::string functions = shader.text;
+    std::string functions = in_literal(application, std::move(shader.text));
     std::string header;
     if (std::string_view(wrapper.before).starts_with("@header")) {
         const std::size_t end = functions.find("\n\n") + 1;
@@ -476,7 +493,7 @@ Shader wrap(const ShaderApplication& application, Shader shader,
         text = replaced(text, "@declarations", declarations);
         text = replaced(text, "@arguments", lines);
         text = replaced(text, "@bindings", bindings);
-        text = replaced(text, "@other", other);
+        text = replaced(text, "@other", in_literal(application, other));
         return replaced(text, "@grids", grids);
     };
     // Applications require certain first lines, so the header comes after them. Their shaders

@@ -5,8 +5,8 @@
 
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
+#include <string_view>
 
 #include "base/atomic_file.h"
 #include "base/format_number.h"
@@ -71,32 +71,33 @@ each against a double-precision reference.
 
 ```js
 import * as THREE from 'three';
-import { use_agx_blender_formula } from 'tonewright-shaders/threejs';
+import { agx_blender } from 'tonewright-shaders/three';
 
 const renderer = new THREE.WebGLRenderer();
-use_agx_blender_formula();                      // before the first material is compiled
-renderer.toneMapping = THREE.CustomToneMapping;
+agx_blender(renderer);                          // Blender's AgX; before the first material is compiled
 ```
+
+The call sets `renderer.toneMapping`. `renderer.toneMappingExposure` is a factor before the curve.
 
 ## three.js, WebGPURenderer
 
 ```js
 import * as THREE from 'three/webgpu';
-import { agx_blender_formula } from 'tonewright-shaders/tsl';
+import { agx_blender } from 'tonewright-shaders/tsl';
 
 const renderer = new THREE.WebGPURenderer();
-renderer.library.addToneMapping(agx_blender_formula, THREE.CustomToneMapping);
+renderer.library.addToneMapping(agx_blender, THREE.CustomToneMapping);
 renderer.toneMapping = THREE.CustomToneMapping;
 ```
 
-## A pass of your own
+The same node works on its WebGL 2 backend.
 
-Blender's AgX and its looks read 3D textures of 3 MB, which tone mapping of three.js cannot have. A pass can:
+## A pass of your own
 
 ```js
 import * as THREE from 'three';
 import { agx_blender } from 'tonewright-shaders';
-import { loadUniforms } from 'tonewright-shaders/threejs';
+import { loadUniforms } from 'tonewright-shaders/three';
 
 const material = new THREE.ShaderMaterial({
     uniforms: { light: { value: null }, ...await loadUniforms(agx_blender) },
@@ -115,7 +116,8 @@ const material = new THREE.ShaderMaterial({
 |---|---|
 | `tonewright-shaders` | `{ id, title, functionName, glsl, wgsl, grids, errors }` |
 | `tonewright-shaders/glsl`, `tonewright-shaders/wgsl` | the same in one language |
-| `tonewright-shaders/threejs` | `use_NAME()`, which installs `CustomToneMapping`; `loadUniforms(entry)` |
+| `tonewright-shaders/three` | `NAME(renderer)`, which sets its tone mapping; `loadUniforms(entry)`, the 3D textures of a material |
+| `tonewright-shaders/threejs` | `use_NAME()`, which only installs `CustomToneMapping`; `loadUniforms(entry)` |
 | `tonewright-shaders/tsl` | a node function of color and exposure |
 
 Each function takes a scene-linear color in Rec.709 and returns a display-linear one; encode it for the display. Bundlers drop
@@ -140,9 +142,8 @@ struct NpmOperator {
     std::string title;
     Shader glsl;  // GLSL ES
     Shader wgsl;
-    // The files for three.js, which hold no textures.
-    std::optional<Shader> threejs;
-    std::optional<Shader> tsl;
+    Shader threejs;
+    Shader tsl;
 };
 
 NpmOperator npm_operator(const OperatorVariant& variant) {
@@ -158,7 +159,6 @@ NpmOperator npm_operator(const OperatorVariant& variant) {
     entry.glsl = write_shader(request, &errors);
     request.language = ShaderLanguage::wgsl;
     entry.wgsl = write_shader(request, &errors);
-    
     request.application = &find_shader_application("threejs");
     entry.threejs = write_shader(request, &errors);
     request.application = &find_shader_application("threejs-tsl");
@@ -179,37 +179,43 @@ class Package {
                                       "export const {0} = {{ ...glsl, ...wgsl }};\n",
                                       id)});
         add_export("index", "operators", id, id, "Operator");
-        if (op.threejs) {
-            files_.push_back({"threejs/" + id + ".js", op.threejs->text});
-            add_export("threejs", "threejs", id, "use_" + op.threejs->function + " as use_" + id,
-                       "() => void", "use_");
-        }
-        if (op.tsl) {
-            files_.push_back({"tsl/" + id + ".js", op.tsl->text});
-            add_export("tsl", "tsl", id, op.tsl->function + " as " + id, "NodeFunction");
-        }
+        files_.push_back({"threejs/" + id + ".js", with_shared_grids(op.threejs.text)});
+        add_export("threejs", "threejs", id, "use_" + op.threejs.function + " as use_" + id,
+                   "() => void", "use_");
+        files_.push_back({"three/" + id + ".js",
+                          fmt::format("import {{ CustomToneMapping }} from 'three';\n"
+                                      "import {{ use_{1} }} from '../threejs/{0}.js';\n\n"
+                                      "export function {0}(renderer) {{\n"
+                                      "    use_{1}();\n"
+                                      "    renderer.toneMapping = CustomToneMapping;\n}}\n",
+                                      id, op.threejs.function)});
+        add_export("three", "three", id, id, "(renderer: WebGLRenderer) => void");
+        files_.push_back({"tsl/" + id + ".js", with_shared_grids(op.tsl.text)});
+        add_export("tsl", "tsl", id, op.tsl.function + " as " + id, "NodeFunction");
         rows_ +=
             fmt::format("| `{}` | {} | {} |\n", id, op.title, rounded_up(op.glsl.errors.in_float));
     }
 
     std::vector<GeneratedFile> finish() {
-        modules_["threejs"] += "export { loadUniforms } from './threejs/loadUniforms.js';\n";
-        types_["threejs"] =
-            "import type { Data3DTexture } from 'three';\nimport type { Glsl } from "
-            "'./types.js';\n\n"
-            "/** Loads the 3D textures that the text reads: uniforms of a material. */\n"
-            "export declare function loadUniforms(entry: Pick<Glsl, 'lattices'>): "
-            "Promise<Record<string, { value: Data3DTexture }>>;\n" +
-            types_["threejs"];
+        for (const char* const module : {"three", "threejs"}) {
+            modules_[module] += "export { loadUniforms } from './threejs/loadUniforms.js';\n";
+            types_[module] =
+                "import type { Data3DTexture, WebGLRenderer } from 'three';\n"
+                "import type { Glsl } from './types.js';\n\n"
+                "/** Loads the 3D textures that the text reads: uniforms of a material. */\n"
+                "export declare function loadUniforms(entry: Pick<Glsl, 'grids'>): "
+                "Promise<Record<string, { value: Data3DTexture }>>;\n" +
+                types_[module];
+        }
         types_["tsl"] =
-            "import type { wgslFn } from 'three/tsl';\n\n"
-            "/** Of a color and an exposure, a factor. */\n"
-            "type NodeFunction = ReturnType<typeof wgslFn>;\n" +
+            "import type { Node } from 'three/webgpu';\n\n"
+            "/** The color shown for a scene-linear color and an exposure, which is a factor. */\n"
+            "type NodeFunction = (color: Node, exposure: Node) => Node;\n" +
             types_["tsl"];
         Json exports = Json::object();
         for (const auto& [module, text] : modules_) {
             files_.push_back({module + ".js", text});
-            const bool is_three = module == "threejs" || module == "tsl";
+            const bool is_three = module.starts_with("three") || module == "tsl";
             files_.push_back(
                 {module + ".d.ts",
                  (is_three ? ""
@@ -249,7 +255,7 @@ class Package {
         std::string grids;
         for (const ShaderTexture& texture : op.glsl.textures) {
             std::string bytes = little_endian_bytes(texture.rgba);
-            const std::string path = "lattices/" + content_hash(bytes) + ".rgba32f";
+            const std::string path = "grids/" + content_hash(bytes) + ".rgba32f";
             grids += fmt::format(
                 "\n        {{ name: '{}', edge: {}, url: new URL('../{}', import.meta.url) }},",
                 texture.name, texture.size[0], path);
@@ -258,10 +264,27 @@ class Package {
         if (!grids.empty()) grids += "\n    ";
         const ShaderErrors& errors = op.glsl.errors;
         return fmt::format(
-            "    id: '{}',\n    title: {},\n    functionName: '{}',\n    lattices: [{}],\n"
+            "    id: '{}',\n    title: {},\n    functionName: '{}',\n    grids: [{}],\n"
             "    errors: {{ float: {}, guaranteed: {} }},\n",
             id, Json(op.title).dump(), op.glsl.function, grids, rounded_up(errors.in_float),
             std::isfinite(errors.guaranteed) ? rounded_up(errors.guaranteed) : "null");
+    }
+    /// The text with its data in modules, which operators share.
+    std::string with_shared_grids(std::string text) {
+        constexpr std::string_view kBegin = ", '";
+        constexpr std::string_view kEnd = "'],\n";
+        std::string imports;
+        for (std::size_t end = text.find(kEnd); end != std::string::npos; end = text.find(kEnd)) {
+            const std::size_t begin = text.rfind(kBegin, end) + kBegin.size();
+            const std::string data = text.substr(begin, end - begin);
+            const std::string hash = content_hash(data);
+            const std::string path = "grids/" + hash + ".js";
+            if (written_.insert(path).second)
+                files_.push_back({path, "export default '" + data + "';\n"});
+            imports += fmt::format("import grid_{0} from '../grids/{0}.js';\n", hash);
+            text.replace(begin - 1, data.size() + 2, "grid_" + hash);
+        }
+        return imports + text;
     }
     void add_language(const std::string& language, const std::string& id, const std::string& type,
                       const std::string& common, const std::string& text) {

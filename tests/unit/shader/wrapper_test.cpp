@@ -75,5 +75,20 @@ TEST(Wrapper, HoldsTheFunctionAndEveryArgumentAndNoMarks) {
     }
 }
 
+TEST(Wrapper, TextInStringsIsQuoted) {
+    for (const ShaderApplication& application : shader_applications()) {
+        Shader shader = shader_of(application);
+        shader.text = "// `a` ${b} \\ \"\"\"\n" + shader.text;
+        const std::string text = wrap(application, shader, {}, shader.text).text;
+        if (application.extension == ".js") {
+            EXPECT_NE(text.find("// \\`a\\` \\${b} \\\\ \"\"\""), std::string::npos);
+        } else if (application.extension == ".gd") {
+            EXPECT_NE(text.find("// `a` ${b} \\\\ \\\"\\\"\\\""), std::string::npos);
+        } else {
+            EXPECT_NE(text.find("// `a` ${b} \\ \"\"\""), std::string::npos) << application.id;
+        }
+    }
+}
+
 }  // namespace
 TONEWRIGHT_NAMESPACE_END

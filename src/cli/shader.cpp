@@ -106,7 +106,7 @@ void write_one(Options& options) {
         return;
     }
     for (const std::string& path : beside)
-        print_result(path + ": its 3D LUT");
+        print_result(path + ": a file that it reads");
     print_result(
         is_double
             ? fmt::format("{}: {}(), the reference in 64-bit float", options.file, shader.function)

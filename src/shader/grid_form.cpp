@@ -364,8 +364,7 @@ GridSource grid_source(const Grid& grid, const LanguageFacts& language, ShaderTa
         3 * static_cast<std::size_t>(grid.edge() * grid.edge() * grid.edge());
     const bool fits = numbers <= language.largest_array;
     constexpr const char* kTargets =
-        "a language with textures (glsl, glsl-es, hlsl, wgsl) or c, or a LUT file for the same "
-        "application: <<bake>>";
+        "a language with textures (glsl, glsl-es, hlsl, wgsl), c, or a LUT for the application";
     const auto refuse = [&](const std::string& expected) {
         return Error(
             Problem{.value = fmt::format("{} reads a 3D LUT of {}^3 nodes{}", function, grid.edge(),

@@ -321,7 +321,9 @@ constexpr Wrapper kWrappers[] = {
      "    result = vec4(@function(color.rgb@call), 1.0);\n"
      "}\n",
      "    float @name = @value; // @help\n"},
-    {"gstreamer",
+    // GStreamer's vertex shader is GLSL ES 1.00, and both must have one version. Arrays of
+    // constants need 3.00, and so another vertex shader.
+    {"gstreamer with arrays",
      "#version 300 es\n"
      "precision highp float;\n"
      "precision highp int;\n"
@@ -334,11 +336,34 @@ constexpr Wrapper kWrappers[] = {
      "    result = vec4(@function(color.rgb@call), color.a);\n"
      "}\n",
      "uniform float @name; // @help (@value)\n"},
+    {"gstreamer",
+     "#version 100\n"
+     "#ifdef GL_ES\n"
+     "precision highp float;\n"
+     "precision highp int;\n"
+     "#endif\n"
+     "varying vec2 v_texcoord;\n"
+     "uniform sampler2D tex;\n"
+     "@arguments\n",
+     "\nvoid main() {\n"
+     "    vec4 color = texture2D(tex, v_texcoord);\n"
+     "    gl_FragColor = vec4(@function(color.rgb@call), color.a);\n"
+     "}\n",
+     "uniform float @name; // @help (@value)\n"},
 };
 
-const Wrapper& wrapper_of(const ShaderApplication& application) {
+bool needs_vertex_shader(const ShaderApplication& application, const Shader& shader) {
+    return application.id == "gstreamer" && shader.text.find(" = float[") != std::string::npos;
+}
+constexpr const char* kVertexShader =
+    "#version 300 es\nin vec4 a_position;\nin vec2 a_texcoord;\nout vec2 v_texcoord;\n\n"
+    "void main() {\n    gl_Position = a_position;\n    v_texcoord = a_texcoord;\n}\n";
+
+const Wrapper& wrapper_of(const ShaderApplication& application, const Shader& shader) {
+    const std::string id =
+        application.id + (needs_vertex_shader(application, shader) ? " with arrays" : "");
     return *std::find_if(std::begin(kWrappers), std::end(kWrappers),
-                         [&](const Wrapper& w) { return w.id == application.id; });
+                         [&](const Wrapper& w) { return w.id == id; });
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -354,6 +379,7 @@ std::string in_literal(const ShaderApplication& application, std::string text) {
     const std::string_view special = application.extension == ".js"   ? "\\`$"
                                      : application.extension == ".gd" ? "\\\""
                                                                       : "";
+    if (application.extension == ".frag") std::replace(text.begin(), text.end(), '"', '\'');
     if (special.empty()) return text;
     std::string quoted;
     for (const char c : text) {
@@ -429,8 +455,11 @@ const std::vector<ShaderApplication>& shader_applications() {
         {"shadertoy", "Shadertoy", ".glsl", ShaderLanguage::glsl_es, "srgb",
          "Paste it into Image; iChannel0 holds the scene-linear picture."},
         {"gstreamer", "GStreamer glshader", ".frag", ShaderLanguage::glsl_es, "srgb",
-         "glshader fragment=\"$(cat FILE)\" on scene-linear frames; uniforms by its property "
-         "`uniforms`."},
+         "glshader fragment=\"\\\"$(cat FILE)\\\"\" on scene-linear frames, and with a file "
+         "tonewright.vert beside it also vertex=\"\\\"$(cat tonewright.vert)\\\"\"; uniforms by "
+         "its "
+         "property `uniforms`. Frames hold 0 to 1: --exposure undoes the scale of brighter "
+         "scenes."},
     };
     return applications;
 }
@@ -449,7 +478,7 @@ std::optional<ShaderLanguage> second_language(const ShaderApplication& applicati
 
 Shader wrap(const ShaderApplication& application, Shader shader,
             const std::vector<ShaderArgument>& arguments, const std::string& other) {
-    const Wrapper& wrapper = wrapper_of(application);
+    const Wrapper& wrapper = wrapper_of(application, shader);
     const LanguageFacts& language = facts_of(application.language);
     std::string lines;
     std::string declarations;
@@ -476,6 +505,8 @@ Shader wrap(const ShaderApplication& application, Shader shader,
         if (form.contents)
             shader.files.push_back({texture.name + form.suffix, form.contents(texture)});
     }
+    if (needs_vertex_shader(application, shader))
+        shader.files.push_back({"tonewright.vert", kVertexShader});
     std::string functions = in_literal(application, std::move(shader.text));
     std::string header;
     if (std::string_view(wrapper.before).starts_with("@header")) {

@@ -126,6 +126,13 @@ class Comparison:
             errors_file.write_text(json.dumps(known | self.recorded, indent=1))
 
 
+def bound_in_application(operator: str) -> float:
+    """Largest error of code values in a file for an application. Nodes in half floats are 2^-12 off, which a power of 2.4
+    and sRGB's curve enlarge a little; PQ curves need more than 32 bits; others are within 4.2e-5 on llvmpipe (docs/shaders.md,
+    "Errors")."""
+    return {"agx_blender": 1.2 * 2**-12, "gt7": 3.5e-3}.get(operator, 4.2e-5)
+
+
 def reference(tonewright: str, operator: str, rgb: np.ndarray, *options: str) -> np.ndarray:
     """The answer of `tonewright eval`."""
     text = "\n".join(" ".join(map(repr, row)) for row in rgb.astype(float).tolist()) + "\n"

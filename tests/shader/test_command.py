@@ -26,6 +26,8 @@ def test_standard_output(report, command):
 
 
 def test_refusals(report, command, scratch):
+    rows = "".join(f"{r / 16} {g / 16} {b / 16}\n" for b in range(17) for g in range(17) for r in range(17))
+    (scratch / "lut.cube").write_text("LUT_3D_SIZE 17\n" + rows)
     for arguments, code, words in [
         (["hable"], USAGE, "shader: --language and --for are missing; expected one of them"),
         (["hable", "-o", "x.h"], USAGE, "missing; expected --language dctl, blinkscript or c"),
@@ -41,13 +43,15 @@ def test_refusals(report, command, scratch):
         (["hable_piecewise", "--language", "c", "--uniforms", "toe_length"], USAGE, "--uniforms is toe_length"),
         (["reinhard_local", "--language", "c"], USAGE, "reinhard_local"),
         (["reinhard_jodie", "--language", "c", "--inverse"], USAGE, "reinhard_jodie has no inverse: stage "),
-        (["agx_blender", "--language", "dctl"], USAGE, "expected a language with textures"),
-        (["agx_blender", "--language", "glsl"], USAGE, "has a texture; expected -o FILE"),
-        (["agx_blender", "--for", "shadertoy"], USAGE, "reads a texture"),
+        (["lut.cube", "--language", "dctl"], USAGE, "reads a 3D LUT of 17^3 nodes without a formula; expected a language with textures"),
+        (["lut.cube", "--for", "shadertoy"], USAGE, "or a LUT for the application"),
+        (["lut.cube", "--language", "glsl", "--tables", "formula"], USAGE, "without a formula; expected another kind of --tables"),
+        (["agx_blender", "--language", "glsl"], USAGE, "nodes.rgba32f; expected -o FILE"),
+        (["agx_blender", "--for", "shadertoy", "--tables", "texture"], USAGE, "expected --tables formula: no texture is possible there"),
         (["--all", scratch / "npm", "--npm"], USAGE, "no option --npm; `tonewright shader --help-all` lists all; use build/release/bin/tonewright_tools npm -o FOLDER"),
         (["--all", "/dev/null"], FILE, "/dev/null"),
         (["camera_response", "--language", "c", "--tables", "texture"], USAGE, "tables is texture; expected array"),
-        (["agx_blender", "--language", "wgsl", "--tables", "array"], USAGE, "tables is array; expected texture"),
+        (["agx_blender", "--language", "wgsl", "--tables", "array"], USAGE, "expected --tables formula or texture: an array should hold at most 4096"),
         (["hable", "--for", "nuk"], USAGE, "did you mean nuke?"),
         (["hable", "--language", "c", "--curves", "fit"], USAGE, "did you mean fitted?"),
         (["drago", "--language", "c", "--uniforms", "log_avrage"], USAGE, "did you mean log_average?"),
@@ -56,7 +60,7 @@ def test_refusals(report, command, scratch):
         (["hable", "--language", "c", "-o", scratch / "no" / "x.h"], FILE, "write: "),
         (["hable", "--language", "c", "-o", "/dev/null"], FILE, "/dev/null"),
     ]:
-        got, out, err = call(command, *arguments)
+        got, out, err = call(command, *(scratch / a if a == "lut.cube" else a for a in arguments))
         what = " ".join(map(str, arguments))
         report.check(what, (got, out) == (code, "") and words in err and err.count("\n") == 1, f"{got} {out} {err}")
 

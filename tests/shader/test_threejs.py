@@ -15,22 +15,19 @@ import subprocess
 
 import numpy as np
 from browser import run_page
-from executed import IS_FULL, colors, npm_modules, reference
+from executed import IS_FULL, bound_in_application, colors, npm_modules, reference
 from pictures import need_program
 
 HERE = pathlib.Path(__file__).parent
 WIDTH, HEIGHT = 64, 47  # a multiple of 64 has rows without padding in WebGPU
 OPERATORS = ["agx_threejs", "agx_blender", "aces_20", "khronos_neutral", "gt7", "aces_13"]
-# three.js encodes with the power 0.41666 for 1/2.4, up to 6.2e-6 off; these texts are up to 4.2e-5 off on llvmpipe.
-FLOATS = 6.2e-6 + 4.2e-5
 # Of a canvas: half a code of 8 bits, and what SwiftShader's rounding is off.
 HALF_A_CODE = 0.5 / 255 + 1e-4
 
 
-# Nodes in half floats are 2^-12 off, which a power of 2.4 and sRGB's curve enlarge a little. PQ curves need more than 32
-# bits: docs/shaders.md, "Errors".
 def bound_of(operator: str) -> float:
-    return {"agx_blender": 1.2 * 2**-12, "gt7": 3.5e-3}.get(operator, FLOATS)
+    # three.js encodes with the power 0.41666 for 1/2.4.
+    return 6.2e-6 + bound_in_application(operator)
 
 
 def run(*arguments, folder: pathlib.Path) -> str:

@@ -84,6 +84,8 @@ TEST(Wrapper, TextInStringsIsQuoted) {
             EXPECT_NE(text.find("// \\`a\\` \\${b} \\\\ \"\"\""), std::string::npos);
         } else if (application.extension == ".gd") {
             EXPECT_NE(text.find("// `a` ${b} \\\\ \\\"\\\"\\\""), std::string::npos);
+        } else if (application.extension == ".frag") {
+            EXPECT_EQ(text.find('"'), std::string::npos);
         } else {
             EXPECT_NE(text.find("// `a` ${b} \\ \"\"\""), std::string::npos) << application.id;
         }

@@ -43,7 +43,7 @@ for folder, direct in {
 # Public header -> the folder that it belongs to.
 PUBLIC = {
     "version": "base", "error": "base", "span": "base", "generated_files": "base", "expr": "expr", "color": "color",
-    "pipeline": "pipeline", "view": "pipeline", "input_encoding": "pipeline", "source_color": "pipeline", "format_color": "pipeline", "engine": "engine", "local": "local", "registry": "registry", "definition": "definition",
+    "pipeline": "pipeline", "view": "pipeline", "input_encoding": "pipeline", "source_color": "pipeline", "format_color": "pipeline", "engine": "engine", "local": "local", "registry": "registry", "engines": "registry", "definition": "definition",
     "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image",
     "image_io": "image", "chart": "image", "contact_sheet": "image", "sequence": "image", "meter": "image",
     "shader": "shader", "verify": "verify", "lint": "verify", "lut_match": "verify",

@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "tonewright/engines.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_file.h"
 #include "tonewright/ocio.h"
@@ -21,6 +22,13 @@ std::string exit_codes() {
         codes += std::to_string(exit.code) + " " + exit.text;
     }
     return codes;
+}
+
+/// For people, each note once.
+void say_note_on_name(const std::string& text) {
+    static std::set<std::string> said;
+    const std::string note = note_on_name(text);
+    if (!note.empty() && says_what_was_done() && said.insert(note).second) print_message(note);
 }
 
 }  // namespace
@@ -84,6 +92,7 @@ Settings ViewOptions::settings() const {
 
 ResolvedOperator ViewOptions::resolved() const {
     ResolvedOperator result = resolve_operator(op, settings(), look, operator_files());
+    say_note_on_name(op);
     warn_of(result);
     return result;
 }
@@ -127,6 +136,7 @@ void print_opencolorio_messages() {
 ResolvedOperator resolve_for_command(const std::string& text, const Settings& settings,
                                      const std::string& look) {
     ResolvedOperator resolved = resolve_picture_operator(text, settings, look, operator_files());
+    say_note_on_name(text);
     warn_of(resolved);
     return resolved;
 }

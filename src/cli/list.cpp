@@ -11,11 +11,12 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/suggestions.h"
+#include "tasks/engines.h"
 #include "tasks/json.h"
 #include "tasks/json_forms.h"
 #include "tasks/operator_facts.h"
 #include "tonewright/definition.h"
-#include "tonewright/lut.h"
+#include "tonewright/engines.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
 #include "tonewright/source_color.h"
@@ -128,37 +129,10 @@ void print_inputs() {
     }
 }
 
-std::string format_of(const LutApplication& host) {
-    if (reads_chains(host, host.format)) return name_of(host.format) + " or ctf";
-    std::string text = fmt::format("{} {}", name_of(host.format), host.size);
-    if (host.bits) text += fmt::format(", {} bit", *host.bits);
-    return text;
-}
-
-std::string taken_by(const LutApplication& host) {
-    if (reads_chains(host, host.format)) return "scene-linear Rec.709";
-    return parse_input_encoding(host.encoding).title +
-           (host.takes_any_primaries ? ", of Rec.709 or Rec.2020, by the operator" : "");
-}
-
-std::string output_of(const LutApplication& host) {
-    return host.display == kLinearOutput ? "display-linear Rec.709"
-                                         : find_display(host.display).title;
-}
-
 void print_hosts() {
     fmt::print("applications (tonewright bake OPERATOR --for APPLICATION -o FILE)\n");
-    for (const LutApplication& host : all_lut_applications()) {
-        fmt::print(
-            "\n  {}: {}\n      format         {}\n      input          {}\n      output         "
-            "{}\n"
-            "      interpolation  {}\n      how to load    {}\n      tested         {}\n",
-            host.id, host.title, format_of(host), taken_by(host), output_of(host),
-            host.interpolation, render(lut_steps_of(host, host.format), command_style()),
-            host.tested.empty() ? "the file format, not the application" : host.tested);
-        if (!reads_chains(host, host.format) && reads_chains(host, LutFormat::ctf))
-            fmt::print("      or clf, ctf    {}\n", host.chain_steps);
-    }
+    for (const LutApplication& host : all_lut_applications())
+        fmt::print("\n{}", application_facts(host, command_style()));
 }
 
 struct Options {
@@ -168,19 +142,26 @@ struct Options {
     bool views = false;
     bool inputs = false;
     bool hosts = false;
+    bool engines = false;
     bool definition = false;
 };
 
 int run_list(const Options& options) {
-    if (!options.op.empty() && (options.inputs || options.hosts)) {
-        throw Error("list: operator is " + options.op + "; expected none with " +
-                    (options.inputs ? "--inputs" : "--hosts"));
+    if (!options.op.empty() && (options.inputs || options.hosts || options.engines)) {
+        const char* const list = options.engines  ? "--engines"
+                                 : options.inputs ? "--inputs"
+                                                  : "--hosts";
+        throw Error("list: operator is " + options.op + "; expected none with " + list);
     }
     const auto print = [](const Json& json) { fmt::print("{}\n", json.dump(2)); };
     if (options.inputs) {
         options.json ? print(all_to_json(all_source_color_names())) : print_inputs();
     } else if (options.hosts) {
         options.json ? print(all_to_json(all_lut_applications(), command_style())) : print_hosts();
+    } else if (options.engines) {
+        options.json
+            ? print(all_to_json(engine_tone_mappers()))
+            : fmt::print("{}", options.markdown ? engines_as_markdown() : engines_as_text());
     } else if (options.definition) {
         if (options.op.empty())
             throw Error("list: operator is missing; expected one before --definition");
@@ -238,6 +219,9 @@ void add_list(CommandLine& program) {
         "--hosts", &options->hosts,
         "list applications that read LUTs, the LUT that each expects, and how to load it",
         {.excludes = {"--markdown", "--views", "--definition", "--inputs"}});
+    command.add_flag("--engines", &options->engines,
+                     "list tone mappers of other programs, and the operators that equal them",
+                     {.excludes = {"--views", "--definition", "--inputs", "--hosts"}});
     command.footer(
         "Examples:\n  tonewright list\n  tonewright list hable --json\n"
         "  tonewright list hable --definition > my.tone");

@@ -22,7 +22,9 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "tasks/engines.h"
 #include "tonewright/definition.h"
+#include "tonewright/engines.h"
 #include "tonewright/error.h"
 #include "tonewright/version.h"
 
@@ -136,6 +138,10 @@ int run(int argc, char** argv) {
     } catch (const DefinitionError& e) {
         const int exit_code = report(e.problem());
         print_excerpt(e.excerpt());
+        return exit_code;
+    } catch (const AmbiguousNameError& e) {
+        const int exit_code = report(e.problem());
+        print_excerpt(to_text(meaning_table(e.name())));
         return exit_code;
     } catch (const Error& e) {
         return report(e.problem());

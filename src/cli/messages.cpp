@@ -78,7 +78,8 @@ const MessageStyle& command_style() {
         [](std::string_view parameter, std::string_view value) {
             if (parameter == "task") return fmt::format("`tonewright {}`", value);
             if (parameter == "list")
-                return fmt::format("`tonewright list{}`", value == "inputs" ? " --inputs" : "");
+                return fmt::format("`tonewright list{}{}`", value == "operators" ? "" : " --",
+                                   value == "operators" ? "" : value);
             if (parameter == "dimension") return fmt::format("--{}", value);
             if (parameter == "target")
                 return std::string(value.empty() ? "-o" : "-o ") + std::string(value);

@@ -8,7 +8,9 @@
 
 #include "base/strings.h"
 #include "local/operators.h"
+#include "registry/engines.h"
 #include "tonewright/definition.h"
+#include "tonewright/engines.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -91,6 +93,27 @@ NamedOperator known_by(std::string_view name, const OperatorSet& others) {
     return {};
 }
 
+std::string_view absence_of(std::string_view name) {
+    for (const AbsentOperator& absent : kAbsentOperators) {
+        if (is_same_name(absent.name, name)) return absent.note;
+    }
+    return {};
+}
+
+/// @throws AmbiguousNameError  the name means tone mappers of several programs
+void refuse_ambiguous(std::string_view name, Problem problem) {
+    std::vector<std::string> meanings;
+    for (const NameMeaning& meaning : meanings_of(name)) {
+        if (!meaning.op.empty()) meanings.push_back(meaning.op);
+    }
+    if (meanings.empty()) return;
+    problem.expected = join_choices(meanings) + "; programs that use the name: <<list=engines>>";
+    if (const std::string_view note = absence_of(name); !note.empty())
+        problem.expected.append("; ").append(note);
+    problem.suggestion.clear();
+    throw AmbiguousNameError(problem, std::string(name));
+}
+
 NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) {
     if (NamedOperator known = known_by(name, others); known.op) return known;
     std::vector<NamedChoice> choices;
@@ -104,10 +127,15 @@ NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) 
     Problem problem = {.what = "operator is " + shown,
                        .expected = "an id from <<list=operators>>",
                        .suggestion = suggested_names(name, choices)};
-    for (const AbsentOperator& absent : kAbsentOperators) {
-        if (!is_same_name(absent.name, name)) continue;
+    refuse_ambiguous(name, problem);
+    if (const std::string others_of_program = tone_mappers_of_program(name);
+        !others_of_program.empty()) {
+        problem.expected += ", or " + others_of_program;
+        problem.suggestion.clear();
+    }
+    if (const std::string_view note = absence_of(name); !note.empty()) {
         // A name that people look for has a better answer than the nearest one.
-        problem.expected += std::string("; ") + absent.note;
+        problem.expected.append("; ").append(note);
         problem.suggestion.clear();
     }
     throw Error(problem);
@@ -248,6 +276,21 @@ ResolvedOperator resolve_helpfully(const Operator& op, const Preset* preset,
     }
 }
 
+/// The parts, where the name is that of a program's tone mapper, with its operator instead.
+/// @throws Error  no operator computes this tone mapper
+std::vector<std::string> without_program(const std::vector<std::string>& parts) {
+    const EngineToneMapper* row = find_engine_tone_mapper(parts.front());
+    if (!row) return parts;
+    if (row->op.empty()) {
+        throw Error(Problem{.what = "operator is " + parts.front() +
+                                    ", which no operator computes (" + row->note + ")",
+                            .expected = "an id from <<list=operators>>"});
+    }
+    std::vector<std::string> own = parts_of(row->op);
+    own.insert(own.end(), parts.begin() + 1, parts.end());
+    return own;
+}
+
 ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
                               std::string_view look, bool takes_local, const OperatorSet& others) {
     // A path is followed by the same settings as a name.
@@ -256,6 +299,7 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
     if (length > 0 && !rest.empty() && rest.front() != ':') rest.insert(0, ":");
     std::vector<std::string> parts = parts_of(rest);
     NamedOperator named;
+    if (length == 0 && !known_by(parts.front(), others).op) parts = without_program(parts);
     if (length == 0 && others.takes_formulas() && may_be_formula(text) &&
         !known_by(parts.front(), others).op) {
         parts = {std::string(text)};

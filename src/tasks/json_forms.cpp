@@ -43,6 +43,36 @@ Json to_json(const ParameterSpec& p, bool is_live) {
     return j;
 }
 
+/// The operator with the parameters that an HDR display of 1000 cd/m2 decides.
+ResolvedOperator on_hdr_display(const Operator& op, const Preset* preset) {
+    const Display& display = find_display("rec2100_pq");
+    return resolve_for_display(resolve(op, preset, {}, ""),
+                               {display.primaries, true, display.peak});
+}
+
+/// The parameters that an HDR display decides, with its values; null if the operator shows its
+/// SDR picture there.
+Json hdr_settings(const Operator& op) {
+    if (op.is_local() || !op.peak) return nullptr;
+    const ResolvedOperator shown = on_hdr_display(op, nullptr);
+    if (!(shown.peak() > 1)) return nullptr;
+    Json settings = Json::object();
+    for (const ParameterSpec& p : op.parameters) {
+        if (!p.from_display) continue;
+        settings.add(p.name, p.kind == Kind::number ? Json(shown.params.number(p.name))
+                                                    : Json(shown.params.choice(p.name)));
+    }
+    return settings;
+}
+
+/// The first preset whose output exceeds white on its own; null: none.
+Json hdr_preset(const Operator& op) {
+    for (const Preset& preset : op.presets) {
+        if (op.peak && resolve(op, &preset, {}, "").peak() > 1) return preset.id;
+    }
+    return nullptr;
+}
+
 }  // namespace
 
 std::string output_of(const Operator& op) {
@@ -84,6 +114,7 @@ Json to_json(const Operator& op) {
     Json looks = Json::array();
     for (const Look& l : op.looks)
         looks.push_back({{"id", l.id}, {"title", l.title}, {"help", l.help}});
+    const Json hdr = hdr_settings(op);
     return {{"id", op.id},
             {"title", op.title},
             {"view", op.view},
@@ -99,6 +130,9 @@ Json to_json(const Operator& op) {
             {"warnings", all_warnings(op)},
             {"deviations", deviations},
             {"dialects", op.dialects},
+            {"hdr", !std::holds_alternative<std::nullptr_t>(hdr.value())},
+            {"hdr_settings", hdr},
+            {"hdr_preset", hdr_preset(op)},
             {"is_diagnostic", op.is_diagnostic},
             {"is_local", op.is_local()}};
 }

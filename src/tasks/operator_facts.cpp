@@ -8,7 +8,9 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "tasks/json_forms.h"
+#include "tonewright/lut.h"
 #include "tonewright/registry.h"
+#include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -28,6 +30,24 @@ std::string_view link_to_choosing(const Operator& op, std::string_view parameter
     const bool is_shared = parameter == "color_correction" || parameter == "saturation" ||
                            parameter == "saturation_from";
     return is_shared ? "[color correction](../choosing.md#color-correction)" : "";
+}
+
+std::string format_of(const LutApplication& host) {
+    if (reads_chains(host, host.format)) return name_of(host.format) + " or ctf";
+    std::string text = fmt::format("{} {}", name_of(host.format), host.size);
+    if (host.bits) text += fmt::format(", {} bit", *host.bits);
+    return text;
+}
+
+std::string taken_by(const LutApplication& host) {
+    if (reads_chains(host, host.format)) return "scene-linear Rec.709";
+    return parse_input_encoding(host.encoding).title +
+           (host.takes_any_primaries ? ", of Rec.709 or Rec.2020, by the operator" : "");
+}
+
+std::string output_of(const LutApplication& host) {
+    return host.display == kLinearOutput ? "display-linear Rec.709"
+                                         : find_display(host.display).title;
 }
 
 }  // namespace
@@ -86,6 +106,18 @@ std::string operator_section(const Operator& op, std::string_view after_characte
     for (const Look& l : op.looks)
         text += fmt::format("* Look `{}`: {}\n", l.id, l.help);
     return text + "\n";
+}
+
+std::string application_facts(const LutApplication& host, const MessageStyle& style) {
+    std::string text = fmt::format(
+        "  {}: {}\n      format         {}\n      input          {}\n      output         {}\n"
+        "      interpolation  {}\n      how to load    {}\n      tested         {}\n",
+        host.id, host.title, format_of(host), taken_by(host), output_of(host), host.interpolation,
+        render(lut_steps_of(host, host.format), style),
+        host.tested.empty() ? "the file format, not the application" : host.tested);
+    if (!reads_chains(host, host.format) && reads_chains(host, LutFormat::ctf))
+        text += fmt::format("      or clf, ctf    {}\n", host.chain_steps);
+    return text;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Facts about an operator as text, for lists and documents.
+// Facts about operators and applications as text, for lists and documents.
 #pragma once
 
 #include <string>
 #include <string_view>
 
+#include "tonewright/lut_applications.h"
 #include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -29,5 +30,9 @@ inline constexpr const char* kLocal = "pictures only; LUTs and configs cannot co
 [[nodiscard]] std::string operator_section(const Operator& op,
                                            std::string_view after_character = {},
                                            bool is_page = false);
+
+/// The LUT that an application expects, and how to load it: lines of text.
+/// @param style  of the parameters that its steps name
+[[nodiscard]] std::string application_facts(const LutApplication& host, const MessageStyle& style);
 
 TONEWRIGHT_NAMESPACE_END

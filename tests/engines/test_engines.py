@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tone mappers of other programs, executed, against the operators that `tonewright list --engines` names for them.
+
+Light engines in each run; all of them with TONEWRIGHT_TEST_ALL=1. Expected values are those of the programs.
+
+    python3 -m pytest -s tests/engines/test_engines.py -k light --tonewright build/release/bin/tonewright
+"""
+import json
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+from engines import ENGINES, Engine, colors, execute, packages_of, tone_mappers_of
+from executed import reference
+
+# Float compilers of other processors contract and order operations otherwise: twice the recorded difference, and half a unit in
+# the last place of a float near 1.
+FACTOR, LEAST = 2, 6e-8
+
+
+def table(command: pathlib.Path) -> dict:
+    """The rows by program, version and name."""
+    done = subprocess.run([command, "list", "--engines", "--json"], capture_output=True, text=True, check=True)
+    return {(row["engine"], row["version"], row["name"]): row for row in json.loads(done.stdout)}
+
+
+def difference(row: dict, shown: np.ndarray, expected: np.ndarray) -> float:
+    if row["compared"].startswith("clamped"):
+        shown, expected = np.clip(shown, 0, 1), np.clip(expected, 0, 1)
+    if "NaN" in row["note"]:  # at black, which the operator maps to black
+        shown = np.where(np.isnan(shown) & (expected == 0), 0, shown)
+    return float(np.abs(shown - expected).max())
+
+
+def compare(report, command: pathlib.Path, engines: list[Engine]) -> None:
+    packages = packages_of(engines, command.parents[1] / "npm-engines")
+    mappers = {(engine.program, engine.version, name): mapper
+               for engine in engines for name, mapper in tone_mappers_of(engine, packages).items()}
+    rgb = colors()
+    rows = table(command)
+    for key, shown in execute(mappers, rgb).items():
+        what = ", ".join(key)
+        if not (row := rows.get(key)):
+            report.check(f"{what}: the table has a row", False, "no such row")
+            continue
+        found = difference(row, shown.astype(float), reference(command, row["operator"], rgb, "--display", row["display"]))
+        report.check(f"{what}: {row['operator']} {found:.2g} ({row['verdict']}, {row['difference']:.2g} recorded)",
+                     found <= FACTOR * row["difference"] + LEAST and row["difference"] <= FACTOR * found + LEAST)
+
+
+def test_light(report, command):
+    compare(report, command, [engine for engine in ENGINES if engine.is_light])
+
+
+@pytest.mark.full
+def test_heavy(report, command):
+    compare(report, command, [engine for engine in ENGINES if not engine.is_light])
+
+
+def test_rows_are_executed(report, command):
+    """Each row whose package the tests can load has an engine here."""
+    executed = {(engine.program, engine.version) for engine in ENGINES}
+    for (program, version, name), row in table(command).items():
+        if row["package"]:
+            report.check(f"{program} {version}, {name}", (program, version) in executed)

@@ -16,6 +16,7 @@
 #include "base/strings.h"
 #include "report/page.h"
 #include "tasks/archive.h"
+#include "tasks/engines.h"
 #include "tasks/json.h"
 #include "tasks/json_forms.h"
 #include "tasks/verify.h"
@@ -99,9 +100,13 @@ class PageContents {
         Json operators = Json::array();
         for (std::size_t i = 0; i < operators_.size(); ++i)
             operators.push_back(operator_json(i));
-        const Json page = {{"version", TONEWRIGHT_VERSION}, {"operators", operators},
-                           {"pictures", pictures_},         {"backends", backends_},
-                           {"backend_notes", notes_},       {"parity", parity()}};
+        const Json page = {{"version", TONEWRIGHT_VERSION},
+                           {"operators", operators},
+                           {"pictures", pictures_},
+                           {"backends", backends_},
+                           {"backend_notes", notes_},
+                           {"parity", parity()},
+                           {"names", all_to_json(meaning_tables())}};
         files_.push_back({"page.json", page.dump()});
         const std::string references =
             "globalThis.tonewrightReferences = {" + references_ + "\n};\n";

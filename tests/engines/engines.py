@@ -219,7 +219,15 @@ def postprocessing(package, three_package):
             for name, (mode, curve) in modes.items()}
 
 
-def model_viewer(package):
+def model_viewer(package, three_package):
+    """Its names are three.js's, and anything else is Neutral."""
+    names = dict(re.findall(r"\['(\w+)', (\w+ToneMapping)\]", read(package / "lib/features/environment.js")))
+    default = re.search(r": (\w+ToneMapping);", read(package / "lib/features/environment.js"))[1]
+    names = {"neutral": default} | {name: curve for name, curve in names.items() if curve != "NoToneMapping"}
+    return named(three_chunk(three_package), {name: f"{curve}(c)" for name, curve in names.items()})
+
+
+def model_viewer_3(package):
     text = template(read(package / "lib/three-components/Renderer.js"), "{ return color; }'")
     return named("const float toneMappingExposure = 1.0;\n" + text, {"commerce": "CustomToneMapping(c)"})
 
@@ -399,7 +407,8 @@ ENGINES = [
     Engine("PlayCanvas", "1.60.0", ["playcanvas@1.60.0"], playcanvas_aces2),
     Engine("CesiumJS", "1.140", ["@cesium/engine@26.3.0"], cesium),
     Engine("postprocessing", "6.39.6", ["postprocessing@6.39.6", "three@0.187.0"], postprocessing, is_light=True),
-    Engine("model-viewer", "3.4.0", ["@google/model-viewer@3.4.0"], model_viewer),
+    Engine("model-viewer", "4.4.0", ["@google/model-viewer@4.4.0", "three@0.183.0"], model_viewer),
+    Engine("model-viewer", "3.4.0", ["@google/model-viewer@3.4.0"], model_viewer_3),
     Engine("gainmap-js", "3.7.3", ["@monogrid/gainmap-js@3.7.3"], gainmap_js, is_light=True),
     Engine("luma.gl", "9.4.2", ["@luma.gl/effects@9.4.2"], luma_effects),
     Engine("luma.gl", "9.4.2", ["@luma.gl/shadertools@9.4.2"], luma_shadertools),

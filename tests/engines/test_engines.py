@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from engines import ENGINES, Engine, colors, execute, packages_of, tone_mappers_of
 from executed import reference
+from pictures import PROJECT
 
 # Float compilers of other processors contract and order operations otherwise: twice the recorded difference, and half a unit in
 # the last place of a float near 1.
@@ -64,3 +65,18 @@ def test_rows_are_executed(report, command):
     for (program, version, name), row in table(command).items():
         if row["package"]:
             report.check(f"{program} {version}, {name}", (program, version) in executed)
+
+
+def test_page(request, report, command):
+    """The tables of docs/engines.md are those of the command."""
+    tables = subprocess.run([command, "list", "--engines", "--markdown"], capture_output=True, text=True, check=True).stdout
+    page = PROJECT / "docs/engines.md"
+    written, mark, generated = page.read_text().partition("--record -->\n\n")
+    if request.config.getoption("--record"):
+        page.write_text(written + mark + tables)
+        generated = tables
+    report.check("docs/engines.md has the tables of `list --engines --markdown`", generated == tables,
+                 "write them with --record")
+    rows = table(command).values()
+    programs = len({row["engine"] for row in rows})
+    report.check("docs/engines.md states the number of programs", f"the tone mappers of {programs} programs" in written, str(programs))

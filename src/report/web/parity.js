@@ -83,6 +83,9 @@ export function makeDialects() {
         }
         if (section.querySelector('table') === null)
             section.append(h('p', {}, 'None of the operators of this page have dialects here.'));
+        section.append(h('h2', {}, 'Names of other programs'),
+            h('p', { class: 'note' }, 'Tone mappers that other programs have under one name, and the operators that compute the same.'));
+        for (const table of page.names) section.append(h('h3', {}, `"${table.name}"`), nameTable(table));
     }
     return { section, draw };
 }
@@ -109,6 +112,14 @@ function matrix(members, colors) {
         return h('td', {}, cell);
     })));
     return h('table', {}, h('thead', {}, h('tr', {}, h('td', {}), ...members.map((op) => h('th', { scope: 'col' }, short(op))))), h('tbody', {}, ...body));
+}
+
+// Distances that the command computed, in the same unit.
+function nameTable({ meanings, distances }) {
+    const body = meanings.map(({ operator, uses }, i) => h('tr', {}, h('th', { scope: 'row' }, `${i + 1} ${operator}: ${uses.join(', ')}`),
+        ...distances[i].map((value) => h('td', {}, value < 10 ? value.toFixed(1) : value.toFixed(0)))));
+    return h('table', { class: 'names' }, h('thead', {}, h('tr', {}, h('td', {}), ...meanings.map((_, i) => h('th', { scope: 'col' }, i + 1)))),
+        h('tbody', {}, ...body));
 }
 
 let open = () => {};

@@ -90,8 +90,10 @@ std::string argument_of(std::string_view parameter) {
 constexpr MessageStyle kStyle = {
     argument_of, [](std::string_view parameter, std::string_view value) {
         if (parameter == "task") return std::string(value == "apply" ? "tonemap()" : value);
-        if (parameter == "list")
-            return std::string(value == "operators" ? "operators()" : "`tonewright list --inputs`");
+        if (parameter == "list") {
+            return value == "operators" ? "operators()"
+                                        : fmt::format("`tonewright list --{}`", value);
+        }
         if (parameter == "settings") return fmt::format("settings={{\"{}\": ...}}", value);
         if (parameter == "custom" && !value.empty())
             return fmt::format("custom={{VIEW: \"{}\"}}", value);

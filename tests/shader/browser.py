@@ -16,7 +16,7 @@ from executed import skip
 # SwiftShader is the renderer of WebGL and WebGPU.
 FLAGS = ["--headless=new", "--no-sandbox", "--no-first-run", "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader",
          "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-color-profile=srgb"]
-TYPES = {".html": "text/html", ".js": "text/javascript", ".json": "application/json"}
+TYPES = {".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json"}
 # An error ends the page; the test prints it.
 PRELUDE = """<!doctype html><meta charset="utf-8"><script>
 const post = async (name, body) => { await fetch('/' + name, { method: 'POST', body }); };

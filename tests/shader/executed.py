@@ -14,21 +14,21 @@ from pictures import skip
 PACKAGES = ["webgpu@0.6.2", "naga-wasm@30.1.0", "three@0.187.0", "playwright-core@1.65.1", "glsl-tone-map@2.2.0"]
 
 
-def npm_modules(tonewright: str) -> pathlib.Path:
-    """Installs the packages into the build folder, 60 MB, unless they are there; returns their folder."""
-    folder = pathlib.Path(tonewright).resolve().parent.parent / "npm-shaders"
+def npm_modules(tonewright: str, name: str = "npm-shaders", packages: list = PACKAGES) -> pathlib.Path:
+    """Installs the packages (60 MB, these) into a folder of the build, unless they are there; returns their folder."""
+    folder = pathlib.Path(tonewright).resolve().parent.parent / name
     wanted = folder / "packages.txt"
     folder.mkdir(exist_ok=True)
     with open(folder / "lock", "w") as lock:  # tests run at the same time
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if not wanted.is_file() or wanted.read_text().split() != PACKAGES:
+        if not wanted.is_file() or wanted.read_text().split() != packages:
             options = ["--no-audit", "--no-fund", "--ignore-scripts", "--fetch-retries=1", "--fetch-retry-mintimeout=1000"]
-            done = subprocess.run(["npm", "install", "--prefix", str(folder), *options, *PACKAGES], capture_output=True,
+            done = subprocess.run(["npm", "install", "--prefix", str(folder), *options, *packages], capture_output=True,
                                   text=True, check=False)
             if done.returncode:
                 reason = (done.stderr.strip().splitlines() or ["no reason"])[0]
-                skip(f"npm cannot install {' '.join(PACKAGES)} ({reason})")
-            wanted.write_text("\n".join(PACKAGES))
+                skip(f"npm cannot install {' '.join(packages)} ({reason})")
+            wanted.write_text("\n".join(packages))
     return folder / "node_modules"
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Babylon.js: materials that map tones themselves, on the canvas.
+// Babylon.js: materials that map tones themselves, and a post-process that does.
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';
 import { Engine } from '@babylonjs/core/Engines/engine.js';
@@ -12,9 +12,12 @@ import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { CreateBox } from '@babylonjs/core/Meshes/Builders/boxBuilder.js';
 import { CreatePlane } from '@babylonjs/core/Meshes/Builders/planeBuilder.js';
 import { CreateSphere } from '@babylonjs/core/Meshes/Builders/sphereBuilder.js';
+import { ImageProcessingPostProcess } from '@babylonjs/core/PostProcesses/imageProcessingPostProcess.js';
 import { Scene } from '@babylonjs/core/scene.js';
 
 export const version = `Babylon.js ${Engine.Version}`;
+
+export const install = (use, { scene }) => use(scene);
 
 const sceneOf = (canvas) => {
     const scene = new Scene(new Engine(canvas, false, { preserveDrawingBuffer: true }));
@@ -29,7 +32,7 @@ const drawn = async (scene, post) => {
     scene.getEngine().dispose();
 };
 
-export async function picture(canvas, light, use, post) {
+export async function picture(canvas, light, use, post, isPipeline) {
     const scene = sceneOf(canvas);
     const camera = new FreeCamera('camera', new Vector3(0, 0, -1), scene);
     camera.mode = FreeCamera.ORTHOGRAPHIC_CAMERA;
@@ -40,14 +43,18 @@ export async function picture(canvas, light, use, post) {
         Constants.TEXTURE_NEAREST_SAMPLINGMODE, Constants.TEXTURETYPE_FLOAT);
     material.albedoTexture.gammaSpace = false;
     CreatePlane('picture', { size: 1 }, scene).material = material;
-    use(scene);
+    await use({ scene });
+    if (isPipeline) {
+        new ImageProcessingPostProcess('shown', 1, camera, Constants.TEXTURE_NEAREST_SAMPLINGMODE, scene.getEngine(), false,
+            Constants.TEXTURETYPE_HALF_FLOAT);
+    }
     await drawn(scene, post);
 }
 
 // Spheres of all hues, lamps up to 256 times white.
 export async function room(canvas, use, post) {
     const scene = sceneOf(canvas);
-    use(scene);
+    await use({ scene });
     const camera = new FreeCamera('camera', new Vector3(0, 2.5, -12), scene);
     camera.setTarget(new Vector3(0, 0.8, 0));
     new HemisphericLight('sky', new Vector3(0, 1, 0), scene).intensity = 0.3;
@@ -60,7 +67,9 @@ export async function room(canvas, use, post) {
     for (let i = 0; i < 7; i++) {
         const color = Color3.FromHSV(360 * i / 7, 1, 1);
         ball(2 * i - 6, 0, 0, (material) => {
-            Object.assign(material, { albedoColor: color, metallic: 0, roughness: 0.15 + 0.1 * i });
+            Object.assign(material, {
+                albedoColor: color, metallic: 0, roughness: 0.15 + 0.1 * i, maxSimultaneousLights: 8,
+            });
         });
         ball(2 * i - 6, 2.2, 2, (material) => {
             Object.assign(material, { unlit: true, albedoColor: color.scale(2 ** (2 * i - 4)) });
@@ -71,6 +80,8 @@ export async function room(canvas, use, post) {
     const floor = CreateBox('floor', { width: 40, height: 0.1, depth: 20 }, scene);
     floor.position.y = -0.9;
     floor.material = new PBRMaterial('floor', scene);
-    Object.assign(floor.material, { albedoColor: new Color3(0.2, 0.2, 0.2), metallic: 0, roughness: 0.4, maxSimultaneousLights: 8 });
+    Object.assign(floor.material, {
+        albedoColor: new Color3(0.2, 0.2, 0.2), metallic: 0, roughness: 0.4, maxSimultaneousLights: 8,
+    });
     await drawn(scene, post);
 }

@@ -98,8 +98,7 @@ WRAPPERS = {
                "// Takes the place of Tonemapper.ACES in this scene, and works with scene.highDynamicRange = true.\n"
                "export function use_@function(scene) {\n"
                "@textures"
-               "    const own = PostProcessStageLibrary.createAcesTonemappingStage;\n"
-               "    PostProcessStageLibrary.createAcesTonemappingStage = () => new PostProcessStage({\n"
+               "    const stage = new PostProcessStage({\n"
                "        name: 'czm_aces',\n"
                "        fragmentShader: code,\n"
                "        uniforms: {\n"
@@ -107,13 +106,16 @@ WRAPPERS = {
                "@uniforms"
                "        },\n"
                "    });\n"
-               "    scene.postProcessStages.tonemapper = Tonemapper.REINHARD; // a change makes a new stage\n"
+               "    const own = PostProcessStageLibrary.createAcesTonemappingStage;\n"
+               "    PostProcessStageLibrary.createAcesTonemappingStage = () => stage;\n"
+               "    scene.postProcessStages.tonemapper = Tonemapper.REINHARD; // only a change asks for a stage\n"
                "    scene.postProcessStages.tonemapper = Tonemapper.ACES;\n"
                "    PostProcessStageLibrary.createAcesTonemappingStage = own;\n"
+               "    return stage;\n"
                "}\n\n"
                "const code = /* glsl */`\n",
         after="@arguments\n"
-              "uniform sampler2D colorTexture;\n"
+              "uniform highp sampler2D colorTexture;\n"
               "uniform float exposure;\n"
               "in vec2 v_textureCoordinates;\n\n"
               "void main() {\n"
@@ -165,6 +167,8 @@ def module_of(host: str, text: str, folder: pathlib.Path, arguments: list = ()) 
     arguments: (name, help, value)."""
     wrapper = WRAPPERS[host]
     function = re.findall(r"^vec3 (\w+)\(", text, re.M)[-1]
+    # Babylon.js writes `precision highp float` at the beginning, unless it stands anywhere in the text. All have it there.
+    text = text.replace("\nprecision highp float;\nprecision highp int;\n", "")
     grids = re.findall(r"^// (\w+): (\d+) x \2 x \2 texels", text, re.M)
     for name, _ in grids:
         text = re.sub(rf"// {name}: .*?\nuniform highp sampler3D {name};\n",

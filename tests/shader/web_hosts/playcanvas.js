@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// PlayCanvas: materials that map tones themselves, on the canvas.
+// PlayCanvas: materials that map tones themselves, and the frame of a camera that does.
 import * as pc from 'playcanvas';
 
 export const version = `PlayCanvas ${pc.version}`;
 
-const appOf = (canvas, use) => {
+export function install(use, { app, camera }) {
+    use(app.graphicsDevice);
+    camera.camera.toneMapping = pc.TONEMAP_ACES2;
+}
+export const set = (_, name, value) => pc.app.graphicsDevice.scope.resolve(`tw_${name}`).setValue(value);
+
+const appOf = (canvas) => {
     const app = new pc.Application(canvas, { graphicsDeviceOptions: { antialias: false, preserveDrawingBuffer: true } });
     app.autoRender = false;
     app.setCanvasFillMode(pc.FILLMODE_NONE, canvas.width, canvas.height);
     app.setCanvasResolution(pc.RESOLUTION_FIXED, canvas.width, canvas.height);
-    use(app.graphicsDevice);
     return app;
 };
 
 const cameraOf = (app, options) => {
     const camera = new pc.Entity();
-    camera.addComponent('camera', { clearColor: new pc.Color(0, 0, 0, 1), toneMapping: pc.TONEMAP_ACES2, ...options });
+    camera.addComponent('camera', { clearColor: new pc.Color(0, 0, 0, 1), ...options });
     app.root.addChild(camera);
     return camera;
 };
@@ -44,10 +49,22 @@ const drawn = async (app, post) => {
     app.destroy();
 };
 
-export async function picture(canvas, light, use, post) {
-    const app = appOf(canvas, use);
-    const camera = cameraOf(app, { projection: pc.PROJECTION_ORTHOGRAPHIC, orthoHeight: 0.5, aspectRatioMode: pc.ASPECT_MANUAL, aspectRatio: 1 });
+export async function picture(canvas, light, use, post, isPipeline) {
+    const app = appOf(canvas);
+    const camera = cameraOf(app, {
+        projection: pc.PROJECTION_ORTHOGRAPHIC, orthoHeight: 0.5, aspectRatioMode: pc.ASPECT_MANUAL, aspectRatio: 1,
+    });
     camera.setLocalPosition(0, 0, 1);
+    await use({ app, camera });
+    if (isPipeline) {
+        const frame = new pc.CameraFrame(app, camera.camera);
+        frame.rendering.toneMapping = pc.TONEMAP_ACES2;
+        frame.rendering.renderFormats = [pc.PIXELFORMAT_RGBA16F]; // its first choice has 5 or 6 bits
+        frame.update();
+        // A linear filter mixes a little of the neighbors into a pixel, and a neighbor may be a billion times as bright.
+        const { sceneTexture } = frame.renderPassCamera;
+        sceneTexture.minFilter = sceneTexture.magFilter = pc.FILTER_NEAREST;
+    }
     // PlayCanvas shows the first row at the top.
     const row = 4 * canvas.width;
     const turned = new Float32Array(light.length);
@@ -63,9 +80,10 @@ export async function picture(canvas, light, use, post) {
 
 // Spheres of all hues, lamps up to 256 times white.
 export async function room(canvas, use, post) {
-    const app = appOf(canvas, use);
+    const app = appOf(canvas);
     app.scene.ambientLight = new pc.Color(0.1, 0.1, 0.1);
     const camera = cameraOf(app, { fov: 45 });
+    await use({ app, camera });
     camera.setLocalPosition(0, 2.5, 12);
     camera.lookAt(0, 0.8, 0);
     for (let i = 0; i < 7; i++) {
@@ -75,7 +93,7 @@ export async function room(canvas, use, post) {
         const lamp = { useLighting: false, emissive: color, emissiveIntensity: 2 ** (2 * i - 4) };
         shape(app, 'sphere', materialOf(lamp), [2 * i - 6, 2.2, -2], [1.6, 1.6, 1.6]);
         const entity = new pc.Entity();
-        entity.addComponent('light', { type: 'omni', color, intensity: 8, range: 12 });
+        entity.addComponent('light', { type: 'omni', color, intensity: 2, range: 12 });
         entity.setLocalPosition(2 * i - 6, 1.5, 3);
         app.root.addChild(entity);
     }

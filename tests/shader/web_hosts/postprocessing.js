@@ -6,15 +6,21 @@ import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 
 export const version = `postprocessing, three.js r${THREE.REVISION}`;
 
-const drawn = async (canvas, [scene, camera], Effect, post) => {
-    const renderer = new THREE.WebGLRenderer({ canvas, preserveDrawingBuffer: true });
-    if (scene.environment === true) {
-        scene.environment = new THREE.PMREMGenerator(renderer).fromScene(new RoomEnvironment()).texture;
-        scene.environmentIntensity = 0.3;
-    }
+export function install(Effect, { renderer, scene, camera }) {
     const composer = new EffectComposer(renderer, { frameBufferType: THREE.HalfFloatType });
+    const effect = new Effect();
     composer.addPass(new RenderPass(scene, camera));
-    composer.addPass(new EffectPass(camera, new Effect()));
+    composer.addPass(new EffectPass(camera, effect));
+    return { composer, effect };
+}
+export const set = ({ effect }, name, value) => { effect.uniforms.get(name).value = value; };
+
+const drawn = async (canvas, scene, camera, use, post) => {
+    const renderer = new THREE.WebGLRenderer({ canvas, preserveDrawingBuffer: true });
+    if (scene.environmentIntensity < 1) {
+        scene.environment = new THREE.PMREMGenerator(renderer).fromScene(new RoomEnvironment()).texture;
+    }
+    const { composer } = await use({ renderer, scene, camera });
     // A linear filter mixes a little of the neighbors into a pixel, and a neighbor may be a billion times as bright.
     for (const { texture } of [composer.inputBuffer, composer.outputBuffer]) {
         texture.minFilter = texture.magFilter = THREE.NearestFilter;
@@ -25,20 +31,20 @@ const drawn = async (canvas, [scene, camera], Effect, post) => {
     renderer.forceContextLoss();
 };
 
-export async function picture(canvas, light, Effect, post) {
+export async function picture(canvas, light, use, post) {
     const map = new THREE.DataTexture(light, canvas.width, canvas.height, THREE.RGBAFormat, THREE.FloatType);
     map.needsUpdate = true;
     const scene = new THREE.Scene();
     scene.add(new THREE.Mesh(new THREE.PlaneGeometry(2, 2), new THREE.MeshBasicMaterial({ map })));
     const camera = new THREE.OrthographicCamera();
     camera.position.z = 1;
-    await drawn(canvas, [scene, camera], Effect, post);
+    await drawn(canvas, scene, camera, use, post);
 }
 
 // Spheres of all hues, lamps up to 256 times white.
-export async function room(canvas, Effect, post) {
+export async function room(canvas, use, post) {
     const scene = new THREE.Scene();
-    scene.environment = true;
+    scene.environmentIntensity = 0.3;
     const add = (geometry, material, ...position) => {
         const mesh = new THREE.Mesh(geometry, material);
         mesh.position.set(...position);
@@ -57,5 +63,5 @@ export async function room(canvas, Effect, post) {
     const camera = new THREE.PerspectiveCamera(45, canvas.width / canvas.height, 0.1, 100);
     camera.position.set(0, 2.5, 12);
     camera.lookAt(0, 0.8, 0);
-    await drawn(canvas, [scene, camera], Effect, post);
+    await drawn(canvas, scene, camera, use, post);
 }

@@ -25,15 +25,14 @@ DOCUMENTATION = PROJECT / "web_hosts_docs.md"
 PACKAGES = ["@babylonjs/core@9.35.0", "playcanvas@2.23.3", "@cesium/engine@26.3.0", "postprocessing@6.39.6", "three@0.187.0"]
 WIDTH, HEIGHT = 64, 47
 OPERATORS = ["agx_blender", "khronos_neutral", "aces_20", "aces_13", "gt7"]
+DEFAULTS = {"exposure": 0.0, "white": 11.2}
 VALUES = {"exposure": 1.0, "white": 4.0}
 # Of a canvas: half a code of 8 bits, and what SwiftShader's rounding is off.
 HALF_A_CODE = 0.5 / 255 + 1e-4
-# PlayCanvas encodes (x + 1e-7)^(1/2.2), which is 6.6e-4 at 0 and rounds to code 0. The largest difference between two
-# floats around x = 4e-4 (code value 0.5/255, 0.45 x^(-0.55) 1e-7) is 3e-6.
-# Texels are half floats, 2^-12 of the value off; AgX's LUT is encoded and at most 1. Three decodings and encodings keep it.
-HALF_FLOATS = 2.0**-12
-# `shader` warns that gt7 is 1.3e-3 off in float, as code values of sRGB, which rise 12.92 times as fast as light near
-# black. There, code values of gamma 2.2 are ((x + 1.3e-3 / 12.92)^(1/2.2) - x^(1/2.2)): 3.7e-3 for x = 1e-4 (code 4).
+# Texels are half floats, 2^-12 off. AgX's LUT has code values of a power of 2.4, which these displays raise to 2.4/2.2 or less.
+HALF_FLOATS = 1.1 * 2.0**-12
+# `shader` warns that gt7 is 1.3e-3 off in float, in code values of sRGB. Near black these rise 12.92 times as fast as light,
+# and code values of gamma 2.2 are (x + 1.3e-3 / 12.92)^(1/2.2) - x^(1/2.2) off: 3.7e-3 for x = 1.2e-4, at code 4.
 GT7 = 3.7e-3
 FULL_LIGHT, LIMIT_OF_PBR = 65504.0, 30.0
 
@@ -59,14 +58,13 @@ STUB = "export default class {}\n" + "".join(f"export const {name} = () => undef
 COMMON_MODULE = "const module = {{ exports: {{}} }}, exports = module.exports, require = () => undefined;\n{}\nexport default module.exports;\n"
 
 
-def module_text(command: str, host: str, operator: str, folder: pathlib.Path, values: dict) -> str:
+def module_text(command: str, host: str, operator: str, folder: pathlib.Path, arguments: tuple) -> str:
     sys.path.insert(0, str(HOSTS))
     from modules import module_of  # until `shader --for` writes these files
-    path = folder / f"{operator}{'_'.join(values)}.glsl"
-    uniforms = ["--uniforms", ",".join(values)] if values else []
+    path = folder / f"{operator}.glsl"
+    uniforms = ["--uniforms", ",".join(arguments)] if arguments else []
     subprocess.run([command, "shader", operator, "--language", "glsl-es", "-o", path, "-q", *uniforms], check=True)
-    defaults = {"exposure": 0, "white": 11.2}
-    return module_of(host, path.read_text(), folder, [(name, "a number", defaults[name]) for name in values])
+    return module_of(host, path.read_text(), folder, [(name, "a number", DEFAULTS[name]) for name in arguments])
 
 
 def example_of(title: str) -> str:
@@ -89,12 +87,12 @@ def test_page(request, report, command, scratch, host, title, display):
     files = {"/npm/": modules, "/light": rgba.tobytes(), "/host.js": HOSTS / f"{host}.js"}
     expected = {}
 
-    def add(operator: str, what: str, light: np.ndarray, options: tuple = (), values: dict | None = None, **settings) -> None:
+    def add(operator: str, what: str, light: np.ndarray, *options: str, arguments: tuple = (), **settings) -> None:
         """Draws it, and expects what eval says of the light with the options."""
-        url = f"/modules/{operator}{'_'.join(values or {})}.js"
-        files[url] = module_text(command, host, operator, scratch, values or {}).encode()
+        url = f"/modules/{what}.js"
+        files[url] = module_text(command, host, operator, scratch, arguments).encode()
         name = f"tw_{operator}_Effect" if host == "postprocessing" else f"use_tw_{operator}"
-        job["modules"].append({"module": url, "name": name, "what": what, "values": {}} | settings)
+        job["modules"].append({"module": url, "name": name, "what": what} | settings)
         expected[what] = reference(command, operator, light, "--display", display, *options)
 
     for operator in OPERATORS if IS_FULL else OPERATORS[:3]:
@@ -103,11 +101,9 @@ def test_page(request, report, command, scratch, host, title, display):
         limit = LIMIT_OF_PBR if host == "babylon" else FULL_LIGHT
         add("agx_blender", "agx_blender_in_a_pipeline", np.minimum(rgb, limit), isPipeline=True)
     if host == "babylon":  # arguments are constants
-        add("hable", "hable_with_arguments", rgb, values=dict.fromkeys(VALUES))
+        add("hable", "hable_with_arguments", rgb, arguments=tuple(VALUES))
     else:
-        add("hable", "hable_with_arguments", rgb, ("--exposure", "1", "--set", "white=4"), dict.fromkeys(VALUES), values_set=VALUES)
-    for module in job["modules"]:
-        module["values"] = module.pop("values_set", {})
+        add("hable", "hable_with_arguments", rgb, "--exposure", "1", "--set", "white=4", arguments=tuple(VALUES), values=VALUES)
     files["/example/agx.js"] = files["/modules/agx_blender.js"]
     export = "export { composer };\n" if host == "postprocessing" else ""
     files["/example/example.js"] = (example_of(title) + export).encode()

@@ -92,6 +92,7 @@ void write_one(Options& options) {
         }
         request.application = &application;
         if (!options.given.contains("--display")) options.display = application.display;
+        if (!options.given.contains("--input")) options.input = application.input;
     }
     request.view = options.view();
     request.uniforms = options.uniforms;

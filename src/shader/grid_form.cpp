@@ -182,6 +182,11 @@ static class {0} {{
         texture.name, texture.size[0], in_base64(texture));
 }
 
+constexpr const char* kSampler = "uniform highp sampler3D {name};\n";
+constexpr const char* kTexelFetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0)";
+/// A constant of a module of JavaScript.
+constexpr const char* kData = "const @texture_data = '@data';\n";
+
 constexpr GridForm kForms[] = {
     // A strip, because OutputPass compiles GLSL ES 1.00, which has no 3D textures.
     {.application = "threejs",
@@ -200,6 +205,68 @@ constexpr GridForm kForms[] = {
      .fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0)",
      .color_of_fetch = ".rgb",
      .lines = "    @texture: [@edge, '@data'],\n",
+     .data = in_base64},
+    // Image processing has one 3D texture, that of color grading.
+    {.application = "babylon",
+     .is_default = true,
+     .holds_halves = true,
+     .declaration = "",
+     .fetch = "texelFetch(txColorTransform, ivec3({x}, {y}, {z}), 0)",
+     .color_of_fetch = ".rgb",
+     .is_only_one = true,
+     .lines = "    // The 3D LUT has the place of the color grading texture, at the weight 0.\n"
+              "    const grid = new RawTexture3D(halves(@texture_data), @edge, @edge, @edge,\n"
+              "        Constants.TEXTUREFORMAT_RGBA, scene, false, false, "
+              "Constants.TEXTURE_NEAREST_SAMPLINGMODE,\n"
+              "        Constants.TEXTURETYPE_HALF_FLOAT);\n"
+              "    grid.level = 0;\n"
+              "    settings.colorGradingTexture = grid;\n"
+              "    settings.colorGradingEnabled = true;\n",
+     .bindings = kData,
+     .data = in_base64},
+    {.application = "playcanvas",
+     .is_default = true,
+     .holds_halves = true,
+     .declaration = kSampler,
+     .fetch = kTexelFetch,
+     .color_of_fetch = ".rgb",
+     .lines = "    device.scope.resolve('@texture').setValue(new Texture(device, {\n"
+              "        name: '@texture', width: @edge, height: @edge, depth: @edge, volume: true, "
+              "mipmaps: false,\n"
+              "        format: PIXELFORMAT_RGBA16F, levels: [halves(@texture_data)],\n"
+              "        minFilter: FILTER_NEAREST, magFilter: FILTER_NEAREST, addressU: "
+              "ADDRESS_CLAMP_TO_EDGE,\n"
+              "        addressV: ADDRESS_CLAMP_TO_EDGE, addressW: ADDRESS_CLAMP_TO_EDGE,\n"
+              "    }));\n",
+     .bindings = kData,
+     .data = in_base64},
+    {.application = "cesium",
+     .is_default = true,
+     .holds_halves = true,
+     .declaration = kSampler,
+     .fetch = kTexelFetch,
+     .color_of_fetch = ".rgb",
+     .lines = "    const @texture = new Texture3D({\n"
+              "        context: scene.context, pixelDatatype: PixelDatatype.HALF_FLOAT, sampler: "
+              "Sampler.NEAREST, flipY: false,\n"
+              "        source: { width: @edge, height: @edge, depth: @edge, arrayBufferView: "
+              "halves(@texture_data) },\n"
+              "    });\n"
+              "    uniforms.@texture = () => @texture;\n",
+     .bindings = kData,
+     .data = in_base64},
+    {.application = "postprocessing",
+     .is_default = true,
+     .holds_halves = true,
+     .declaration = kSampler,
+     .fetch = kTexelFetch,
+     .color_of_fetch = ".rgb",
+     .lines = "        const @texture = new Data3DTexture(halves(@texture_data), @edge, @edge, "
+              "@edge);\n"
+              "        @texture.type = HalfFloatType;\n"
+              "        @texture.needsUpdate = true;\n"
+              "        uniforms.set('@texture', new Uniform(@texture));\n",
+     .bindings = kData,
      .data = in_base64},
     {.application = "bevy",
      .is_default = false,
@@ -294,15 +361,12 @@ constexpr GridForm kForms[] = {
      .contents = exr_file},
 };
 
-/// Applies f to each Grid of the program once.
-template <class F>
-void for_each_grid(const ShaderProgram& program, const F& f) {
+std::map<const Grid*, std::shared_ptr<const Grid>> grids_of(const ShaderProgram& program) {
     std::map<const Grid*, std::shared_ptr<const Grid>> grids;
     for (const Expr& e : nodes_of(compose(program))) {
         if (e.op() == ExprOp::grid) grids.emplace(e.grid().get(), e.grid());
     }
-    for (const auto& entry : grids)
-        f(entry.second);
+    return grids;
 }
 
 std::vector<double> computed_nodes(const Grid& grid) {
@@ -344,8 +408,8 @@ LanguageFacts language_for(const ShaderApplication& application) {
     LanguageFacts language = facts_of(application.language);
     const GridForm* const form = grid_form(application);
     language.has_textures = form != nullptr;
+    language.prefers_formula = !form || !form->is_default;
     if (!form) return language;
-    language.prefers_formula = !form->is_default;
     if (form->holds_halves) language.texel = "half floats";
     language.texture = form->declaration;
     language.texture_parameter = form->parameter;
@@ -356,6 +420,13 @@ LanguageFacts language_for(const ShaderApplication& application) {
     language.is_for_grids = true;
     language.holds_halves = form->holds_halves;
     return language;
+}
+
+ShaderTables tables_for(const ShaderApplication& application, const ShaderProgram& program,
+                        ShaderTables tables) {
+    const GridForm* const form = grid_form(application);
+    const bool is_too_much = form && form->is_only_one && grids_of(program).size() > 1;
+    return is_too_much && tables == ShaderTables::by_size ? ShaderTables::formula : tables;
 }
 
 GridSource grid_source(const Grid& grid, const LanguageFacts& language, ShaderTables tables,
@@ -388,9 +459,11 @@ GridSource grid_source(const Grid& grid, const LanguageFacts& language, ShaderTa
         case ShaderTables::by_size:
             break;
     }
+    constexpr std::size_t kFew = 4096;
+    if (numbers > kFew && language.prefers_formula && grid.has_formula())
+        return GridSource::formula;
     if (fits) return GridSource::array;
-    if (language.has_textures && !(language.prefers_formula && grid.has_formula()))
-        return GridSource::texture;
+    if (language.has_textures) return GridSource::texture;
     if (grid.has_formula()) return GridSource::formula;
     throw refuse(kTargets);
 }
@@ -404,17 +477,18 @@ std::array<Expr, 3> node_formula(const Grid& grid) {
 GridsInText grids_in_text(const ShaderProgram& program, const LanguageFacts& language,
                           ShaderTables tables, const std::string& function) {
     GridsInText result;
-    for_each_grid(program, [&](const std::shared_ptr<const Grid>& grid) {
+    for (const auto& entry : grids_of(program)) {
+        const std::shared_ptr<const Grid>& grid = entry.second;
         const GridSource source = grid_source(*grid, language, tables, function);
         const bool is_half = source == GridSource::texture && language.holds_halves;
-        if (source != GridSource::formula && !is_half) return;
+        if (source != GridSource::formula && !is_half) continue;
         result.emplace(grid.get(), is_half
                                        ? std::make_shared<const Grid>(
                                              grid->edge(), [grid] { return half_nodes(*grid); })
                                        : std::make_shared<const Grid>(
                                              grid->edge(), [grid] { return computed_nodes(*grid); },
                                              [grid] { return grid->formula(); }));
-    });
+    }
     return result;
 }
 

@@ -26,6 +26,7 @@ struct GridForm {
     const char* fetch;
     const char* color_of_fetch;
     std::size_t first_binding = 0;
+    bool is_only_one = false;  // texture in the application's shader
     /// Type and name of an argument, if functions cannot read a global texture.
     const char* parameter = "";
     /// Comments after the declaration's first line.
@@ -44,6 +45,10 @@ struct GridForm {
 
 /// The language with the application's way to declare and fetch textures.
 [[nodiscard]] LanguageFacts language_for(const ShaderApplication& application);
+
+/// The request's tables, but computed nodes for more 3D LUTs than the application has textures.
+[[nodiscard]] ShaderTables tables_for(const ShaderApplication& application,
+                                      const ShaderProgram& program, ShaderTables tables);
 
 /// Sources of a Grid's nodes in a text.
 enum class GridSource : unsigned char { array, texture, formula };

@@ -238,6 +238,11 @@ LanguageFacts language_of(const ShaderRequest& request) {
     return request.application ? language_for(*request.application) : facts_of(request.language);
 }
 
+ShaderTables tables_of(const ShaderRequest& request, const ShaderProgram& program) {
+    return request.application ? tables_for(*request.application, program, request.tables)
+                               : request.tables;
+}
+
 double measure_in_float(const ShaderRequest& request, const ShaderProgram& program,
                         const GridsInText& grids) {
     if (request.is_inverse) return measure_inverse(request, program);
@@ -542,8 +547,8 @@ std::optional<double> node_error(const ShaderApplication& application, const Vie
 ShaderErrors measure_shader(const ShaderRequest& request) {
     check(request);
     const ShaderProgram program = program_of(request);
-    const GridsInText grids =
-        grids_in_text(program, language_of(request), request.tables, shader_function_name(request));
+    const GridsInText grids = grids_in_text(
+        program, language_of(request), tables_of(request, program), shader_function_name(request));
     ShaderErrors errors;
     errors.in_float = measure_in_float(request, program, grids);
     if (request.is_inverse) return errors;
@@ -577,13 +582,14 @@ Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     Shader shader;
     shader.function = shader_function_name(request);
     const std::string definition = definition_hash(pipeline);
-    const GridsInText grids = grids_in_text(program, language, request.tables, shader.function);
+    const GridsInText grids =
+        grids_in_text(program, language, tables_of(request, program), shader.function);
     shader.errors =
         errors && grids.empty() ? *errors : known_errors(request, program, definition, grids);
     const std::string prologue =
         *language.prologue ? std::string("\n") + language.prologue : std::string();
-    PrintedProgram printed =
-        print_program(program, language, shader.function, request.uniforms, request.tables);
+    PrintedProgram printed = print_program(program, language, shader.function, request.uniforms,
+                                           tables_of(request, program));
     const std::string comments = header(request, shader, definition, grids);
     shader.text = comments + prologue + printed.text;
     shader.textures = std::move(printed.textures);
@@ -595,8 +601,9 @@ Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
         facts.texture = "";
         facts.loader = "";
         facts.prologue = "";
-        other =
-            print_program(program, facts, shader.function, request.uniforms, request.tables).text;
+        other = print_program(program, facts, shader.function, request.uniforms,
+                              tables_of(request, program))
+                    .text;
     }
     return wrap(*request.application, shader, arguments_of(request), other);
 }

@@ -19,7 +19,7 @@ namespace {
 /// `@declarations` those of `declaration`. Text between `@[` and `@]` is left out if there are no
 /// arguments, and text between `@(` and `@)` if there are no textures. `@header` is replaced by the
 /// comments of the text, `@grids` and `@bindings` by the lines of the GridForm, and `@other` by the
-/// functions in the second language.
+/// functions in the second language, `@halves` by what reads the data of web pages.
 struct Wrapper {
     const char* id;
     const char* before;
@@ -314,6 +314,142 @@ constexpr Wrapper kWrappers[] = {
      "};\n",
      "        defineParam(@name, \"@name\", @value);\n", "@name", "    float @name;  // @help\n",
      "    "},
+    // Each takes the place of a tone mapper of its own, because only there light is not yet
+    // clipped.
+    {"babylon",
+     "import { ShaderStore } from '@babylonjs/core/Engines/shaderStore.js';\n"
+     "import { ImageProcessingConfiguration } from "
+     "'@babylonjs/core/Materials/imageProcessingConfiguration.js';\n"
+     "import '@babylonjs/core/Shaders/ShadersInclude/imageProcessingFunctions.js';\n"
+     "@(import { Constants } from '@babylonjs/core/Engines/constants.js';\n"
+     "import { RawTexture3D } from '@babylonjs/core/Materials/Textures/rawTexture3D.js';\n@)"
+     "\n"
+     "// Call it before materials are compiled. It takes the place of TONEMAPPING_ACES on the "
+     "whole "
+     "page.\n"
+     "export function use_@function(scene) {\n"
+     "    const store = ShaderStore.IncludesShadersStore;\n"
+     "    store.imageProcessingFunctions = store.imageProcessingFunctions.replace(\n"
+     "        /(vec3 ACESFitted|\\/\\/ Tonewright)[^]*?(?=\\n#endif)/, code);\n"
+     "    const settings = scene.imageProcessingConfiguration;\n"
+     "    settings.toneMappingType = ImageProcessingConfiguration.TONEMAPPING_ACES;\n"
+     "    settings.toneMappingEnabled = true;\n"
+     "@grids"
+     "}\n\n"
+     "const code = /* glsl */`// Tonewright\n",
+     "@arguments\n"
+     "vec3 ACESFitted(vec3 color) {\n"
+     "    vec3 shown = @function(color@call);\n"
+     "    return max(shown, vec3(0.0)); // Babylon.js encodes it with a power\n"
+     "}\n"
+     "`.trimEnd();\n@halves",
+     "const float @name_value = @value; // @help\n", "@name_value"},
+    {"playcanvas",
+     "import { SHADERLANGUAGE_GLSL, ShaderChunks@(, ADDRESS_CLAMP_TO_EDGE, FILTER_NEAREST, "
+     "PIXELFORMAT_RGBA16F, Texture@) } from 'playcanvas';\n\n"
+     "// Call it before materials are compiled, then: camera.toneMapping = TONEMAP_ACES2.\n"
+     "export function use_@function(device) {\n"
+     "    ShaderChunks.get(device, SHADERLANGUAGE_GLSL).set('tonemappingAces2PS', code);\n"
+     "@declarations"
+     "@grids"
+     "}\n\n"
+     "const code = /* glsl */`\n",
+     "@arguments\n"
+     "vec3 toneMap(vec3 color) {\n"
+     "    vec3 shown = @function(getExposure() * color@call);\n"
+     "    return max(shown, vec3(0.0)); // PlayCanvas encodes it with a power\n"
+     "}\n"
+     "`;\n@halves",
+     "uniform float tw_@name; // @help\n", "tw_@name",
+     "    device.scope.resolve('tw_@name').setValue(@value);\n"},
+    {"cesium",
+     "import { PostProcessStage, PostProcessStageLibrary, Tonemapper@(, PixelDatatype, Sampler, "
+     "Texture3D@) } from '@cesium/engine';\n\n"
+     "// It takes the place of Tonemapper.ACES in this scene, and works with "
+     "scene.highDynamicRange = true.\n"
+     "export function use_@function(scene) {\n"
+     "    const uniforms = { exposure: 1 };\n"
+     "@declarations"
+     "@grids"
+     "    const stage = new PostProcessStage({ name: 'czm_aces', fragmentShader: code, uniforms "
+     "});\n"
+     "    const own = PostProcessStageLibrary.createAcesTonemappingStage;\n"
+     "    PostProcessStageLibrary.createAcesTonemappingStage = () => stage;\n"
+     "    scene.postProcessStages.tonemapper = Tonemapper.REINHARD; // only a change asks for a "
+     "stage\n"
+     "    scene.postProcessStages.tonemapper = Tonemapper.ACES;\n"
+     "    PostProcessStageLibrary.createAcesTonemappingStage = own;\n"
+     "    return stage;\n"
+     "}\n\n"
+     "const code = /* glsl */`\n",
+     "@arguments\n"
+     "uniform highp sampler2D colorTexture;\n"
+     "uniform float exposure;\n"
+     "in vec2 v_textureCoordinates;\n\n"
+     "void main() {\n"
+     "    vec4 color = texture(colorTexture, v_textureCoordinates);\n"
+     "    vec3 shown = @function(exposure * color.rgb@call);\n"
+     "    out_FragColor = vec4(czm_inverseGamma(max(shown, vec3(0.0))), color.a);\n"
+     "}\n"
+     "`;\n@halves",
+     "uniform float tw_@name; // @help\n", "tw_@name", "    uniforms.tw_@name = @value;\n"},
+    {"postprocessing",
+     "import { Uniform@(, Data3DTexture, HalfFloatType@) } from 'three';\n"
+     "import { BlendFunction, Effect } from 'postprocessing';\n\n"
+     "// An effect after bloom; effects on the displayed picture, such as noise, go after it.\n"
+     "export class @function_Effect extends Effect {\n"
+     "    constructor() {\n"
+     "        const uniforms = new Map();\n"
+     "@declarations"
+     "@grids"
+     "        super('@function', code, { blendFunction: BlendFunction.SRC, uniforms });\n"
+     "    }\n"
+     "}\n\n"
+     "const code = /* glsl */`\n",
+     "@arguments\n"
+     "uniform float toneMappingExposure; // three.js sets it\n\n"
+     "void mainImage(const in vec4 color, const in vec2 uv, out vec4 result) {\n"
+     "    vec3 shown = @function(toneMappingExposure * color.rgb@call);\n"
+     "    result = vec4(max(shown, vec3(0.0)), color.a); // three.js encodes it with a power\n"
+     "}\n"
+     "`;\n@halves",
+     "uniform float @name; // @help\n", "@name",
+     "        uniforms.set('@name', new Uniform(@value));\n"},
+    {"filament", "#pragma once\n\n#include <filament/ToneMapper.h>\n#include <math/vec3.h>\n\n",
+     "\n/// ColorGrading::Builder().toneMapper(&...), with luminanceScaling and gamutMapping off.\n"
+     "struct @function_ToneMapper final : filament::ToneMapper {\n"
+     "@arguments@[\n@]"
+     "    filament::math::float3 operator()(filament::math::float3 color) const noexcept override "
+     "{\n"
+     "        const float scene[3] = {color.x, color.y, color.z};\n"
+     "        float c[3];\n"
+     "        @function(scene@call, c);\n"
+     "        // Linear Rec.709 to linear Rec.2020.\n"
+     "        return {0.6274039f * c[0] + 0.32928303f * c[1] + 0.043313067f * c[2],\n"
+     "                0.06909729f * c[0] + 0.9195404f * c[1] + 0.011362316f * c[2],\n"
+     "                0.016391438f * c[0] + 0.08801331f * c[1] + 0.89559525f * c[2]};\n"
+     "    }\n"
+     "};\n",
+     "    float @name = @value;  // @help\n"},
+    {"obs", "@arguments\n",
+     "\n// OBS passes the picture as code values of sRGB, in 8 bits.\n"
+     "float tw_light(float code) {\n"
+     "    return code <= 0.04045 ? code / 12.92 : pow((code + 0.055) / 1.055, 2.4);\n"
+     "}\n\n"
+     "float4 mainImage(VertData v_in) : TARGET\n"
+     "{\n"
+     "    float4 color = image.Sample(textureSampler, v_in.uv);\n"
+     "    float3 light = float3(tw_light(color.r), tw_light(color.g), tw_light(color.b));\n"
+     "    return float4(@function(light@call), color.a);\n"
+     "}\n",
+     "// @help\n"
+     "uniform float @name<\n"
+     "    string label = \"@name\";\n"
+     "    string widget_type = \"slider\";\n"
+     "    float minimum = @min;\n"
+     "    float maximum = @max;\n"
+     "    float step = 0.01;\n"
+     "> = @value;\n"},
     {"shadertoy", "",
      "\nvoid mainImage(out vec4 result, in vec2 place) {\n"
      "@arguments"
@@ -351,6 +487,11 @@ constexpr Wrapper kWrappers[] = {
      "}\n",
      "uniform float @name; // @help (@value)\n"},
 };
+
+constexpr const char* kHalves =
+    "\n// Nodes of 3D LUTs: RGBA in half floats (base64).\n"
+    "const halves = (text) => new Uint16Array(Uint8Array.from(atob(text), (c) => "
+    "c.charCodeAt(0)).buffer);\n";
 
 bool needs_vertex_shader(const ShaderApplication& application, const Shader& shader) {
     return application.id == "gstreamer" && shader.text.find(" = float[") != std::string::npos;
@@ -424,6 +565,33 @@ const std::vector<ShaderApplication>& shader_applications() {
          "Call renderer.library.addToneMapping(..., CustomToneMapping), and set "
          "renderer.toneMapping to CustomToneMapping, instead of a tone mapping of three.js. "
          "renderer.toneMappingExposure is a factor before the curve."},
+        {"postprocessing", "postprocessing (three.js)", ".js", ShaderLanguage::glsl_es, "linear",
+         "Add new ..._Effect() to an EffectPass of a composer in half floats, instead of "
+         "ToneMappingEffect, with renderer.toneMapping NoToneMapping. renderer.toneMappingExposure "
+         "is "
+         "a factor before the curve."},
+        {"babylon", "Babylon.js", ".js", ShaderLanguage::glsl_es, "linear",
+         "Call use_...(scene) before the first material is compiled; it takes the place of "
+         "TONEMAPPING_ACES. The exposure of imageProcessingConfiguration is a factor before the "
+         "curve. Babylon.js encodes by the power 1/2.2, as a display of gamma 2.2."},
+        {"playcanvas", "PlayCanvas", ".js", ShaderLanguage::glsl_es, "linear",
+         "Call use_...(device) before the first material is compiled, and set toneMapping to "
+         "TONEMAP_ACES2, whose place it takes. app.scene.exposure is a factor before the curve. "
+         "PlayCanvas encodes by the power 1/2.2, as a display of gamma 2.2."},
+        {"cesium", "CesiumJS", ".js", ShaderLanguage::glsl_es, "linear",
+         "Call use_...(scene) with scene.highDynamicRange on; it takes the place of "
+         "Tonemapper.ACES. postProcessStages.exposure is a factor before the curve. CesiumJS "
+         "encodes "
+         "by the power 1/2.2, as a display of gamma 2.2."},
+        {"filament", "Filament", ".h", ShaderLanguage::c, "linear",
+         "Hand its class to ColorGrading::Builder::toneMapper(), instead of a tone mapper of "
+         "Filament, with luminanceScaling and gamutMapping off. Exposure comes before it. Filament "
+         "shows a 3D LUT of it, and encodes.",
+         "lin_rec2020"},
+        {"obs", "OBS (obs-shaderfilter)", ".shader", ShaderLanguage::hlsl, "srgb",
+         "A filter User-defined shader. OBS passes pictures of 8 bits from 0 to 1, which are "
+         "already "
+         "tone mapped; exposure is an argument."},
         {"bevy", "Bevy", ".wgsl", ShaderLanguage::wgsl, "linear",
          "A full-screen material with Tonemapping::None on the camera. Exposure comes before it. "
          "Bevy encodes its picture."},
@@ -521,6 +689,7 @@ Shader wrap(const ShaderApplication& application, Shader shader,
         text = replaced(text, "@function", shader.function);
         text = replaced(text, "@call", call);
         text = replaced(text, "@names", names);
+        text = replaced(text, "@halves", shader.textures.empty() ? "" : kHalves + bindings);
         text = replaced(text, "@declarations", declarations);
         text = replaced(text, "@arguments", lines);
         text = replaced(text, "@bindings", bindings);

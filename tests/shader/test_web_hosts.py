@@ -11,7 +11,6 @@ import json
 import pathlib
 import re
 import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -21,7 +20,7 @@ from pictures import PROJECT, need_program
 
 HERE = pathlib.Path(__file__).parent
 HOSTS = HERE / "web_hosts"
-DOCUMENTATION = PROJECT / "web_hosts_docs.md"
+DOCUMENTATION = PROJECT / "docs/shaders.md"
 PACKAGES = ["@babylonjs/core@9.35.0", "playcanvas@2.23.3", "@cesium/engine@26.3.0", "postprocessing@6.39.6", "three@0.187.0"]
 WIDTH, HEIGHT = 64, 47
 OPERATORS = ["agx_blender", "khronos_neutral", "aces_20", "aces_13", "gt7"]
@@ -59,12 +58,10 @@ COMMON_MODULE = "const module = {{ exports: {{}} }}, exports = module.exports, r
 
 
 def module_text(command: str, host: str, operator: str, folder: pathlib.Path, arguments: tuple) -> str:
-    sys.path.insert(0, str(HOSTS))
-    from modules import module_of  # until `shader --for` writes these files
-    path = folder / f"{operator}.glsl"
+    path = folder / f"{operator}.js"
     uniforms = ["--uniforms", ",".join(arguments)] if arguments else []
-    subprocess.run([command, "shader", operator, "--language", "glsl-es", "-o", path, "-q", *uniforms], check=True)
-    return module_of(host, path.read_text(), folder, [(name, "a number", DEFAULTS[name]) for name in arguments])
+    subprocess.run([command, "shader", operator, "--for", host, "-o", path, "-q", *uniforms], check=True)
+    return path.read_text()
 
 
 def example_of(title: str) -> str:

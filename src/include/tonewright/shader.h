@@ -48,6 +48,8 @@ struct ShaderApplication {
     std::string display;
     /// Instructions for the user: the application's own tone mapper, and the place of exposure.
     std::string steps;
+    /// Space of the color that the application passes.
+    std::string input = "lin_rec709";
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<ShaderApplication>& shader_applications();
 /// Ignores case; `-`, `_` and blanks are equal.

@@ -698,7 +698,7 @@ Shader wrap(const ShaderApplication& application, Shader shader,
     };
     // Applications require certain first lines, so the header comes after them. Their shaders
     // already begin with the lines of the language.
-    if (*language.prologue && application.id != "threejs")
+    if (*language.prologue && application.id != "threejs" && application.id != "filament")
         functions = replaced(functions, std::string("\n") + language.prologue, "");
     if (*wrapper.indent) {
         functions = replaced(functions, "\n", std::string("\n") + wrapper.indent);

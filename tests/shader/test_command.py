@@ -4,11 +4,13 @@
     python3 -m pytest tests/shader/test_command.py --tonewright build/release/bin/tonewright
 """
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
 
 import numpy as np
+from executed import reference
 
 OK, USAGE, FILE = 0, 2, 3  # exit codes
 
@@ -108,6 +110,50 @@ def test_files(report, command, scratch):
     report.check("the inverse brings light back", np.allclose(numbers, [0.3, 0.2, 0.1], atol=1e-6), numbers)
 
 
+# What obs-shaderfilter puts before the file; HLSL has no annotations of effects.
+OBS = """Texture2D image;
+SamplerState textureSampler;
+struct VertData { float2 uv : TEXCOORD0; };
+#define TARGET SV_Target
+"""
+# The part of Filament's headers that a tone mapper takes.
+FILAMENT = {"filament/ToneMapper.h": "namespace filament { struct ToneMapper { virtual ~ToneMapper() = default;\n"
+                                     "virtual math::float3 operator()(math::float3 c) const noexcept = 0; }; }\n",
+            "math/vec3.h": "#pragma once\nnamespace filament { namespace math { struct float3 { float x, y, z; }; } }\n"}
+
+
+def test_filament(report, command, scratch):
+    """Its class, compiled against a stand-in, takes and gives linear Rec.2020."""
+    for name, text in FILAMENT.items():
+        (scratch / name).parent.mkdir(exist_ok=True)
+        (scratch / name).write_text(text)
+    for operator, arguments, bound in (("agx_blender", [], 1e-5), ("hable", ["--uniforms", "white"], 1e-6)):
+        code, _, err = call(command, operator, "--for", "filament", *arguments, "-o", scratch / "mapper.h")
+        report.check(f"{operator}: it is written", code == OK, err)
+        (scratch / "main.cpp").write_text(f"""#include <math/vec3.h>
+#include "mapper.h"
+#include <cstdio>
+int main() {{
+    const tw_{operator}_ToneMapper mapper;
+    float r, g, b;
+    while (std::scanf("%f %f %f", &r, &g, &b) == 3) {{
+        const auto c = mapper({{r, g, b}});
+        std::printf("%.9g %.9g %.9g\\n", c.x, c.y, c.z);
+    }}
+}}
+""")
+        subprocess.run(["g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{scratch}", scratch / "main.cpp", "-o", scratch / "main"],
+                       check=True)
+        scene = np.concatenate([np.repeat(0.18 * 2.0 ** np.arange(-10, 10), 3).reshape(-1, 3),
+                                2.0 ** np.random.default_rng(2).uniform(-8, 6, (200, 3)), np.eye(3) * 4]).astype(np.float32)
+        text = "\n".join(" ".join(f"{x:.9g}" for x in row) for row in scene)
+        shown = subprocess.run([scratch / "main"], input=text, check=True, capture_output=True, text=True).stdout
+        right = reference(command, operator, scene, "--input", "lin_rec2020", "--display", "linear")
+        to_rec2020 = np.array([[0.627403896, 0.329283038, 0.043313066], [0.069097289, 0.919540395, 0.011362316],
+                               [0.016391439, 0.088013308, 0.895595253]])  # ITU-R BT.2087
+        report.bound(operator, np.abs(np.array(shown.split(), float).reshape(-1, 3) - right @ to_rec2020.T).max(), bound)
+
+
 def test_applications(report, command, scratch):
     code, listing, _ = call(command, "--list")
     applications = [line.split()[0] for line in listing.split("applications\n")[1].splitlines()]
@@ -131,6 +177,8 @@ def test_applications(report, command, scratch):
     for name, stage, options, text in [
         ("godot", "comp", ["-V", "-o", "/dev/null"], texts["godot"].split('"""')[1].replace("\\", "")),
         ("gstreamer", "frag", [], texts["gstreamer"]),
+        ("obs", "frag", ["-D", "-V", "-o", "/dev/null", "-e", "entry"], OBS + re.sub(r"<.*?>(?= = )", "", texts["obs"], flags=re.S)
+         + "float4 entry(float2 uv : TEXCOORD0) : SV_Target { VertData v; v.uv = uv; return mainImage(v); }\n"),
         ("shadertoy", "frag", [], "#version 300 es\nprecision highp float;\nuniform sampler2D iChannel0;\nuniform vec3 iResolution;\n"
          "out vec4 o;\n" + texts["shadertoy"] + "void main() { mainImage(o, gl_FragCoord.xy); }\n"),
         ("mpv", "frag", [], "#version 330\nuniform float exposure, white;\nvec4 HOOKED_texOff(float x) { return vec4(x); }\n"

@@ -23,6 +23,8 @@ RELATIVE = 1e-9
 # Where the result is a difference (Hable's E/F, saturation, matrices, S(0)), 1e-16 of the terms is left beside 0; the
 # terms are of the size of the color's largest channel, or of 1. The looks' power of 0.8 raises that to 2e-13.
 ABSOLUTE = 1e-12
+# Operators whose clamp hides that their terms are larger than the result: the color times its own luminance.
+HIDDEN_TERMS = {"reinhard2": 100}
 # Displays with an infinite slope at black, where 1e-16 of light is 2e-7 in code, are compared as light. HLG: its root.
 DISPLAY_LIGHT = {"rec1886": lambda code: code**2.4, "g22": lambda code: code**2.2, "rec2020": lambda code: code**2.4,
                  "rec2100_pq": lambda code: pq_decode(code) / 100, "p3d65_pq": lambda code: pq_decode(code) / 100,
@@ -37,7 +39,7 @@ APPLY = [{"apply": "channels"}, LUMINANCE, MAX, HUE,
          {**PRESERVING, "saturation": 1.4}, {**PRESERVING, "saturation": 0.8, "saturation_from": "contrast"}]
 CURVES = ("linear exponential logarithmic log_tonemap exponentiation reinhard reinhard_extended nebula hable hable_gdc "
           "hable_piecewise hejl_burgess_dawson hejl_2015 aldridge lottes filament_generic ue3 day schlick toe uchimura "
-          "drago ward tumblin_rushmeier aces_narkowicz bt2390 bt2446a spline").split()
+          "drago opencv_drago ward tumblin_rushmeier mobius aces_narkowicz aces_cesium bt2390 bt2446a spline").split()
 
 HABLE_GDC = {"shoulder_strength": 0.22, "linear_strength": 0.3, "toe_numerator": 0.01}
 HABLE_GODOT = {"shoulder_strength": 0.88, "linear_strength": 0.6, "toe_numerator": 0.01, "white": 1, "exposure_bias": 1}
@@ -48,6 +50,9 @@ SOFT = {"toe_strength": 0.2, "toe_length": 0.3, "shoulder_strength": 4, "shoulde
 UCHIMURA_ALL = {"max_brightness": 4, "contrast": 1.2, "linear_start": 0.3, "linear_length": 0.5,
                 "black_tightness": 2, "pedestal": 0.02}
 DEVLIN_MEANS = {"mean_red": 0.6, "mean_green": 0.5, "mean_blue": 0.4, "mean_luminance": 0.45}
+OPENCV = {"minimum": 0.1, "maximum": 4, "color_adaptation": 0.3, "light_adaptation": 0.7, "mean_gray": 0.45,
+          "mean_red": 0.6, "mean_green": 0.5, "mean_blue": 0.4}
+FFMPEG = ("none", "linear", "gamma", "clip", "reinhard", "hable", "mobius")
 RAMP = {"form": "ramp", "width": 0.25, "strength": 0.5}
 RODS = {"display_max": 200, "photopic_adaptation": 0.05, "scotopic_adaptation": 0.01}
 P3D60 = "0.68 0.32 0.265 0.69 0.15 0.06 0.32168 0.33767"
@@ -59,16 +64,17 @@ EETF = [{"source_peak": 4000, "target_peak": 250, "source_black": 0.01, "target_
         {"output": "hdr", "target_peak": 20, "target_black": 0.1}, {"reference_white": 203, "source_peak": 10000}]
 # Operator -> sets of settings beside the defaults; "look" among them is the look.
 SETTINGS = {
-    "clamp": [],
+    "clamp": [MAX],
     "linear": [{"divisor": 1e-6}, {"divisor": 65504}, {"divisor": 0.18}],
     "exponential": [{"average": 1e-6}, {"average": 0.18}, {"average": 65504}],
     "logarithmic": [{"p": 0.001, "maximum": 1e-6}, {"p": 1000, "maximum": 65504}, {"p": 30, "maximum": 4}],
     "log_tonemap": [{"limit": 0.001}, {"limit": 65504, "contrast": 1}, {"contrast": 0.5},
                     {"contrast": 0.5, "apply": "channels"}],
     "exponentiation": [{"p": 0.01}, {"p": 1, "maximum": 1e-6}, {"p": 0.4, "maximum": 65504}],
-    "reinhard": [],
+    "reinhard": [{**LUMINANCE, "weights": w} for w in ("babylon", "lygia")],
+    "reinhard2": [{"clamp": "no", "white": 16}, {"middle_grey": 0.18, "average": 0.01, "white": 65504}],
     "reinhard_extended": [{"white": w, **a} for w in (0.5, 1.5, 16) for a in ({}, LUMINANCE, MAX)],
-    "reinhard_jodie": [],
+    "reinhard_jodie": [{"weights": "lygia"}],
     "reinhard_constant_luminance": [],
     "nebula": [{"middle_grey": 0.01, "maximum": 0.01, "average": 65504}, {"middle_grey": 1, "maximum": 65504},
                {"average": 0.001}, {"maximum": 2, "average": 0.2, "apply": "channels"}],
@@ -79,7 +85,9 @@ SETTINGS = {
                         {"light_adaptation": 0, "mean_luminance": 0.001}],
     "hable": [HABLE_GDC, HABLE_GODOT, HABLE_ALL, {"white": 4}, {"exposure_bias": 1}, {"exposure_bias": 100},
               {**HABLE_ALL, **MAX}],
-    "hable_gdc": [{"white": 4}, {"exposure_bias": 0.01}, {"exposure_bias": 2, "white": 65504}],
+    "opencv_reinhard": [{"light_adaptation": 0}, OPENCV, {**OPENCV, "light_adaptation": 0},
+                        {"intensity": 8, "contrast": 1}, {**OPENCV, "output_minimum": 0.1, "output_maximum": 0.9}],
+    "hable_gdc": [{"white": 4}, {"black": 0.05}, {"exposure_bias": 0.01}, {"exposure_bias": 2, "white": 65504}],
     "hable_piecewise": [FILM, {**FILM, "gamma": 1 / 2.2}, SOFT, {"toe_length": 0}, {"toe_strength": 1},
                         {"toe_strength": 1, "gamma": 0.5}, {"toe_length": 1, "toe_strength": 0.3},
                         {"shoulder_length": 1}, {"shoulder_length": 1e-5, "shoulder_strength": 1},
@@ -87,7 +95,7 @@ SETTINGS = {
                         {"max_brightness": 10, **SOFT}, {"max_brightness": 4, **FILM, **LUMINANCE},
                         {"gamma": 0.1, **SOFT},
                         {**FILM, **LUMINANCE}, {**FILM, **HUE}],
-    "hejl_burgess_dawson": [],
+    "hejl_burgess_dawson": [{"output": "squared"}, {"output": "squared", **LUMINANCE}],
     "hejl_2015": [{"white": 0.1}, {"white": 4}, {"white": 65504}],
     "aldridge": [{"cutoff": 0.001}, {"cutoff": 0.2}, {"cutoff": 0.5}, {"cutoff": 1}],
     "lottes": [{"contrast": 1, "shoulder": 1.2}, {"contrast": 2}, {"hdr_max": 100, "mid_out": 0.18}, {"shoulder": 2},
@@ -104,7 +112,9 @@ SETTINGS = {
     "uchimura": [{"max_brightness": 10}, {"contrast": 0.8}, {"black_tightness": 1}, {"pedestal": 0.05}, UCHIMURA_ALL,
                  {"linear_start": 0.01, "black_tightness": 3}, {"linear_start": 0.99, "linear_length": 0.99},
                  {"max_brightness": 100, "contrast": 5}, {"max_brightness": 10, **LUMINANCE}],
-    "drago": [{"bias": 0.5}, {"bias": 1}, {"display_max": 10000}, {"log_average": 1e-6}, {"log_average": 65504},
+    "opencv_drago": [{"bias": 0.5}, {"minimum": 0.1, "maximum": 20, "log_average": 0.3, "maximum_gray": 15},
+                     {"output_minimum": 0.1, "output_maximum": 2}],
+    "drago": [{"bias": 0.5}, {"bias": 0.7, "bias_scales_average": "no"}, {"bias": 1}, {"display_max": 10000}, {"log_average": 1e-6}, {"log_average": 65504},
               {"maximum": 1e-6}, {"log_average": 0.3, "maximum": 65504, "bias": 0.75}],
     "ward": [{"display_max": 1}, {"display_max": 10000}, {"log_average": 1e-6}, {"log_average": 65504}],
     "tumblin_rushmeier": [{"display_max": 1}, {"display_max": 10000, "contrast_max": 2}, {"contrast_max": 10000},
@@ -115,7 +125,15 @@ SETTINGS = {
     "durand_dorsey_rods": [{"rod_weight_from": "fixed"}, {"rod_weight_from": "fixed", "rod_weight": 0}, RODS,
                            {"scotopic_adaptation": 65504}, {"scotopic_adaptation": 1e-6},
                            {"blue_shift_red": 0, "blue_shift_green": 2, "blue_shift_blue": 0.5}],
-    "aces_narkowicz": [{"prescale": 0.6}, {"prescale": 1.8}, {"prescale": 0.6, **LUMINANCE}],
+    "ffmpeg": [*({"tonemap": curve, **more} for curve in FFMPEG for more in ({"desat": 0}, {"param": 0.7, "peak": 100})),
+               {"desat": 65504}, {"desat": 1e-7}, {"tonemap": "gamma", "param": 4}, {"peak": 1.01}],
+    "mobius": [{"knee": 0.001}, {"knee": 0.99}, {"peak": 1.01}, {"peak": 65504}],
+    "babylon_contrast": [{"contrast": c} for c in (0, 0.5, 1, 2, 4)],
+    "nanogl_tb": [],
+    "luma_gl": [{"maximum_luminance": 4}, {"maximum_luminance": 100}],
+    "aces_cesium": [],
+    "aces_galacean": [],
+    "aces_narkowicz": [{"clamp": "no"}, {"clamp": "no", **LUMINANCE}, {"prescale": 0.6}, {"prescale": 1.8}, {"prescale": 0.6, **LUMINANCE}],
     "aces_hill": [{"prescale": 0.5}, {"gain": 1.8}, {"prescale": 1.8, "white": 1, "clamp": "no"}, {"clamp": "no"},
                   {"prescale": 1 / 0.6}, {"white": 4}, {"gain": 100, "white": 65504}],
     "aces_filament": [{"brightness": 1 / 0.6}, {"brightness": 0.01}, {"brightness": 100}],
@@ -135,7 +153,8 @@ SETTINGS = {
                {"black_clip": 0.05, "white_clip": 0.2}, {**UNREAL_LEGACY, "glow_and_red": "off"}],
     "agx_sobotka": [{"look": "golden"}, {"look": "punchy"}],
     "agx_minimal": [{"order": 7}],
-    "agx_threejs": [],
+    "agx_threejs": [{"clamp": "yes"}, {"matrices": "exact"}],
+    "agx_needle": [],
     "agx_filament": [{"look": "golden"}, {"look": "punchy"}],
     "agx_godot44": [],
     "agx_godot": [{"contrast": 0.1}, {"contrast": 4}, {"white": 2}, {"white": 65504}, {"output_max": 0.2},
@@ -150,27 +169,47 @@ SETTINGS = {
                         {"desaturation": 1, "start_compression": 0.5}],
     "khronos_neutral_filament": [{"start_compression": 0.1}, {"start_compression": 0.99}, {"desaturation": 0},
                                  {"desaturation": 1, "start_compression": 0.5}],
+    "khronos_neutral_needle": [],
     "gt7": [{"output": "hdr"}, {"output": "hdr", "peak": 250}, {"output": "hdr", "peak": 10000}],
     "frostbite": [{"linear_end": 0.01}, {"linear_end": 0.5}, {"linear_end": 0.99}],
     "somewhat_boring": [],
     "bt2390": [*EETF, {"knee_offset": 1, "black_lift": "libplacebo"}, {"knee_offset": 2},
                *({**e, "knee_offset": 1, "black_lift": "libplacebo"} for e in EETF)],
     "bt2446a": EETF,
-    "spline": [*EETF, {"contrast": 0}, {"contrast": 1.5}, {"average": 5}, {"average": 10000, "contrast": 1}],
+    "spline": [*({"apply": "channels", **e} for e in EETF), EETF[2], {"contrast": 0}, {"contrast": 1.5}, {"average": 5}, {"average": 10000, "contrast": 1}],
     "camera_response": [{"iso": 1e-5}, {"iso": 0.5}, {"iso": 65504}],
-    "false_color": [],
+    "false_color": [{"palette": "lygia"}],
 }
 # Operator -> preset -> what it sets.
 PRESETS = {
-    "reinhard": {"luminance": LUMINANCE, "max": MAX},
-    "reinhard_extended": {"luminance": LUMINANCE, "max": MAX},
-    "hable": {"gdc": {**HABLE_GDC, "exposure_bias": 1}, "godot": HABLE_GODOT},
+    "clamp": {"max": MAX},
+    "exponential": {"channels": {"apply": "channels"}, "babylon": {"apply": "channels", "average": 0.9070250776},
+                    "babylon_photographic": {"apply": "channels", "average": 1.442695041}},
+    "reinhard": {"luminance": LUMINANCE, "max": MAX, "babylon": {**LUMINANCE, "weights": "babylon"},
+                 "lygia": {**LUMINANCE, "weights": "lygia"}},
+    "reinhard_extended": {"luminance": LUMINANCE, "max": MAX, "cesium": {"white": 1}},
+    "reinhard2": {"three_stdlib": {"white": 16, "clamp": "no"}},
+    "reinhard_jodie": {"lygia": {"weights": "lygia"}},
+    "hable": {"gdc": {**HABLE_GDC, "exposure_bias": 1}, "godot": HABLE_GODOT, "no_bias": {"exposure_bias": 1},
+              "postprocessing": {"exposure_bias": 1, "white": 4}, "ray_tracing_renderer": {"exposure_bias": 1, "white": 5},
+              "mapbox": {"exposure_bias": 1, "white": 1000},
+              "unity_neutral": {"shoulder_strength": 0.2, "linear_strength": 0.29, "linear_angle": 0.24,
+                                "toe_strength": 0.272, "white": 5.3, "exposure_bias": 1.31338}},
+    "hable_gdc": {"playcanvas": {"white": 6.2107773060570395, "black": 0.004}},
+    "hejl_burgess_dawson": {"babylon": {"output": "squared"}},
+    "lottes": {"vtk": {"contrast": 1.6773, "shoulder": 0.9714, "hdr_max": 11.0785, "mid_out": 0.18},
+               "vtk_uncharted2": {"contrast": 1.1759, "shoulder": 0.9746, "hdr_max": 6.3704, "mid_out": 0.18}},
+    "drago": {"pfstmo": {"bias_scales_average": "no"}},
+    "ffmpeg": {curve: {"tonemap": curve} for curve in FFMPEG},
+    "luma_gl": {"hdr": {"maximum_luminance": 4}},
+    "agx_threejs": {"r161": {"clamp": "yes"}, "hdrify": {"matrices": "exact"}},
+    "false_color": {"lygia": {"palette": "lygia"}},
     "hable_piecewise": {"film": FILM, "soft": SOFT},
     "toe": {"ramp": RAMP},
     "uchimura": {"hdr": {"max_brightness": 10}},
-    "aces_narkowicz": {"matched": {"prescale": 0.6}},
+    "aces_narkowicz": {"matched": {"prescale": 0.6}, "unclamped": {"clamp": "no"}},
     "aces_hill": {"bakinglab": {"gain": 1.8}, "godot": {"prescale": 1.8, "white": 1, "clamp": "no"},
-                  "threejs": {"prescale": 1 / 0.6}},
+                  "threejs": {"prescale": 1 / 0.6}, "unclamped": {"clamp": "no"}},
     "aces_13": {"sdr_cinema": {"output": "sdr_cinema"}, "hdr_1000": {"output": "hdr_1000"}, "ctl": {"spline": "ctl"},
                 "gamut_compressed": {"gamut_compression": "yes"}},
     "agx_blender": {"formula": {"method": "formula"}, "hdr": {"range": "hdr"}},
@@ -178,7 +217,7 @@ PRESETS = {
     "unreal": {"legacy": UNREAL_LEGACY},
     "agx_minimal": {"order7": {"order": 7}},
     "gt7": {"hdr": {"output": "hdr"}},
-    "bt2390": {"libplacebo": {"knee_offset": 1, "black_lift": "libplacebo"}},
+    "bt2390": {"libplacebo": {"knee_offset": 1, "black_lift": "libplacebo", "apply": "luminance"}},
 }
 # Settings that contradict each other: both sides refuse them.
 REFUSED = [
@@ -190,6 +229,10 @@ REFUSED = [
     ("lottes", {"shoulder": 0.01, "contrast": 2}),
     ("filament_generic", {"mid_out": 0.01, "hdr_max": 1, "mid_in": 0.9}),
     ("day", {"crossover": 20}),
+    ("ffmpeg", {"tonemap": "mobius", "param": 1}),
+    ("spline", {"target_black": 0.05}),
+    ("opencv_reinhard", {"minimum": 2, "maximum": 1}),
+    ("opencv_drago", {"minimum": 0.6}),
     ("aces_13", {"output": "hdr_1000", "limit": "none"}),
     ("aces_20", {"primaries": "0.64 0.33 0.3 0.6 0.15 0.06"}),
 ]
@@ -303,7 +346,7 @@ def compare(binary, view, rgb):
     if view["display"] in DISPLAY_LIGHT:
         light, wanted = (DISPLAY_LIGHT[view["display"]](np.maximum(code, 0)) for code in (actual, expected))
     error = np.abs(light - wanted)
-    size = np.maximum(np.abs(wanted).max(-1, keepdims=True), 1)
+    size = np.maximum(np.abs(wanted).max(-1, keepdims=True), HIDDEN_TERMS.get(view["operator"], 1))
     ratio = error / (RELATIVE * np.abs(wanted) + ABSOLUTE * size)
     ok = bool((ratio <= 1).all())  # NaN fails
     line += f" {error.max():9.2e} {ratio.max():9.3g}  {'ok' if ok else 'FAIL'}"

@@ -297,8 +297,9 @@ def classify(entry):
         return Mapping("hable_piecewise", PIECEWISE_SETS[next(iter(params.values()))], **PIECEWISE)
     if name == "libplacebo_spline":
         if params["avg"] == 0:
-            return Mapping("spline", **NITS)
-        return replace(Mapping("spline", "source_peak=4000;target_peak=600;average=26", **NITS), output_scale=600.0)
+            return Mapping("spline", "apply=channels", **NITS)
+        return replace(Mapping("spline", "source_peak=4000;target_peak=600;average=26;apply=channels", **NITS),
+                       output_scale=600.0)
     if name == "reinhard_devlin":
         return Mapping("reinhard_devlin", DEVLIN if params["f"] else "")
     return next((reason for start, reason in REASONS.items() if name.startswith(start)), "")

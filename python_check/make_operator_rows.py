@@ -4,8 +4,8 @@
     TONEWRIGHT_SHARED=<folder> python3 make_operator_rows.py
 
 Published figures come from reference/check_values.json in that folder, through check_values.py. The operators add
-what they lack: other settings, negatives, near-black, colors beyond the half-float range. Rows of other operators
-are kept as they are.
+what they lack: other settings, negatives, near-black, colors beyond the half-float range. Rows of other operators, and
+those whose origin is an executed engine ("executed: ..."), are kept as they are.
 """
 
 import csv
@@ -48,17 +48,17 @@ CURVES = {
     "logarithmic": ["p=30;maximum=4"],
     "log_tonemap": ["limit=4", "contrast=0.5", "contrast=1;apply=channels"],
     "exponentiation": ["p=0.3;maximum=16"],
-    "reinhard": [],
+    "reinhard": ["apply=luminance;weights=babylon", "apply=luminance;weights=lygia"],
     "reinhard_extended": ["white=2.5", "white=0.5;apply=max", *CORRECTIONS],
     "nebula": ["middle_grey=0.18;maximum=4;average=1.5"],
     "hable": [GDC, GDC + ";exposure_bias=1", GDC + ";white=2", "white=4;exposure_bias=1"],
-    "hable_gdc": ["white=4;exposure_bias=2"],
+    "hable_gdc": ["white=4;exposure_bias=2", "black=0.004;white=6.2107773060570395"],
     "hable_piecewise": ["toe_strength=0.5;toe_length=0.5;shoulder_strength=2;shoulder_length=0.5;shoulder_angle=1",
                         "toe_length=0",
                         "toe_strength=0.2;toe_length=0.3;shoulder_strength=4;shoulder_length=0.7;shoulder_angle=0.4;"
                         "gamma=0.8", "max_brightness=10;shoulder_strength=2;shoulder_angle=0.5;toe_strength=0.3",
                         "toe_strength=0.6;shoulder_length=1;shoulder_strength=1;apply=luminance"],
-    "hejl_burgess_dawson": CORRECTIONS,
+    "hejl_burgess_dawson": [*CORRECTIONS, "output=squared"],
     "hejl_2015": ["white=4"],
     "aldridge": ["cutoff=0.2"],
     "lottes": ["contrast=1.2;shoulder=0.9;hdr_max=16;mid_out=0.18"],
@@ -69,22 +69,36 @@ CURVES = {
     "toe": ["form=ramp;width=0.25;strength=0.5", "width=0.2;strength=0.5;brightness=0.05;contrast=1.2",
             "form=ramp;width=0.3;strength=0.4;white=10;apply=luminance"],
     "uchimura": [UCHIMURA, "max_brightness=10;apply=luminance"],
-    "drago": ["bias=0.7;display_max=300;log_average=0.3;maximum=20", *CORRECTIONS[2:6:3]],
+    "drago": ["bias=0.7;display_max=300;log_average=0.3;maximum=20", "bias=0.7;bias_scales_average=no",
+              *CORRECTIONS[2:6:3]],
+    "opencv_drago": ["bias=0.7;minimum=0.1;maximum=20;log_average=0.3;maximum_gray=15;output_minimum=0.1"],
+    "mobius": ["knee=0.5;peak=4"],
     "ward": ["display_max=200;log_average=3"],
     "tumblin_rushmeier": ["display_max=200;contrast_max=100;log_average=3"],
-    "aces_narkowicz": ["prescale=0.6", CORRECTIONS[2]],
+    "aces_narkowicz": ["prescale=0.6", "clamp=no", CORRECTIONS[2]],
+    "aces_cesium": [],
     "bt2390": [BLACKS, BLACKS + ";knee_offset=1;black_lift=libplacebo", "source_peak=4000;knee_offset=2",
                BLACKS + ";output=hdr;target_peak=600;source_peak=4000",
                "source_peak=100;target_peak=400", "source_peak=10000;reference_white=203", CORRECTIONS[2]],
     "bt2446a": [BLACKS, "source_peak=4000;target_peak=250;reference_white=203", "source_peak=400;target_peak=400"],
-    "spline": [BLACKS, "contrast=0.2;average=50", "source_peak=4000;target_peak=250;contrast=1.5;reference_white=203"],
+    "spline": [BLACKS + ";apply=channels", "contrast=0.2;average=50", "source_peak=4000;target_peak=250;contrast=1.5;reference_white=203"],
 }
 LUMINANCE_FIRST = ("exponential logarithmic log_tonemap exponentiation nebula schlick drago ward "
-                   "tumblin_rushmeier").split()  # default apply=luminance
+                   "opencv_drago tumblin_rushmeier spline").split()  # default apply=luminance
 # The others: settings beside the defaults.
 OTHERS = {
-    "clamp": [],
-    "reinhard_jodie": [],
+    "clamp": ["apply=max"],
+    "reinhard2": ["white=16;clamp=no"],
+    "reinhard_jodie": ["weights=lygia"],
+    "opencv_reinhard": ["light_adaptation=0;maximum=4;output_minimum=0.1",
+                        "intensity=-1;contrast=0.5;color_adaptation=0.3;light_adaptation=0.7;minimum=0.1;maximum=4;"
+                        "mean_red=0.6;mean_green=0.5;mean_blue=0.4"],
+    "ffmpeg": [*(f"tonemap={curve}" + more for curve in ("none", "linear", "gamma", "clip", "reinhard", "hable", "mobius")
+                 for more in (";desat=0", ";param=0.7;peak=100"))],
+    "babylon_contrast": ["contrast=0.5", "contrast=3"],
+    "nanogl_tb": [],
+    "luma_gl": ["maximum_luminance=4"],
+    "aces_galacean": [],
     "reinhard_constant_luminance": [],
     "reinhard_devlin": ["intensity=-1;contrast=0.5;chromatic_adaptation=0.3;light_adaptation=0.7;mean_red=0.6;"
                         "mean_green=0.5;mean_blue=0.4", "intensity=2;light_adaptation=0;mean_luminance=0"],
@@ -106,12 +120,14 @@ OTHERS = {
                "toe=0.85;shoulder=0.4;black_clip=0.02"],
     "agx_sobotka": [],
     "agx_minimal": ["order=7"],
-    "agx_threejs": [],
+    "agx_threejs": ["clamp=yes", "matrices=exact"],
+    "agx_needle": [],
     "agx_filament": [],
     "agx_godot44": [],
     "agx_godot": ["contrast=1;white=8", "contrast=1.5;white=50;output_max=5"],
     "khronos_neutral": ["start_compression=0.5;desaturation=0.6"],
     "khronos_neutral_filament": ["start_compression=0.5;desaturation=0.6"],
+    "khronos_neutral_needle": [],
     "gt7": ["output=hdr", "output=hdr;peak=4000"],
     "frostbite": ["linear_end=0.6"],
     "somewhat_boring": [],
@@ -120,7 +136,7 @@ OTHERS = {
                         "file=synthetic_response_uneven.csv;iso=2", "file=synthetic_dorf.txt;curve=Synthetic-1;iso=2",
                         "file=synthetic_dorf.txt;curve=Synthetic-1Blue;iso=2",
                         "file=synthetic_dorf.txt;curve=SyntheticMono;iso=2"],
-    "false_color": [],
+    "false_color": ["palette=lygia"],
     **{defect: [] for defect in operators.DEFECTS},
 }
 LOOKS = {"agx_sobotka": ("golden", "punchy"), "agx_filament": ("golden", "punchy"),
@@ -168,10 +184,11 @@ def derived_cases():
         working = "lin_" + operators.WORKING[operator]
         forms = []
         if operator in CURVES:
-            first = "luminance" if operator in LUMINANCE_FIRST else "channels"
+            first = "luminance" if operator in LUMINANCE_FIRST else "max" if operator == "mobius" else "channels"
             forms = [f"apply={a}" for a in ("channels", "luminance", "max", "hue_preserving") if a != first]
         code = operator in operators.CODE_POWER
-        hues = HUES if operator in ("aces_filament", "unreal", "gt7", "frostbite", "agx_threejs") else COLORS
+        hues = HUES if operator in ("aces_filament", "unreal", "gt7", "frostbite", "agx_threejs",
+                                     "aces_galacean", "agx_needle") else COLORS
         hues = (*COLORS, *STOPS) if operator == "false_color" else hues
         colors = COLORS
         if operator in FORMATIONS:
@@ -204,7 +221,8 @@ def main():
     if not shared:
         raise SystemExit("make_operator_rows: TONEWRIGHT_SHARED is unset; expected the folder that holds "
                          "reference/check_values.json")
-    kept = [row for row in read_rows() if row["operator"] not in operators.OPERATORS]
+    kept = [row for row in read_rows()
+            if row["operator"] not in operators.OPERATORS or row["origin"].startswith("executed: ")]
     rows = [*kept, *published_rows(shared), *derived_rows()]
     rows = list({tuple(row[c] for c in COLUMNS[:8]) + (row["origin"],): row for row in rows}.values())  # each once
     rows.sort(key=lambda row: row["operator"])  # stable: published rows stay first

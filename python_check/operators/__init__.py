@@ -13,6 +13,7 @@ Each family is a module with the dict OPERATORS (name -> function), and where th
 
 * WORKING: name -> primaries, where they are not Rec.709;
 * CODE_POWER: name -> power, where it puts out code values;
+* DECODE: name -> function of the settings, which gives the function code -> light; instead of that power;
 * OUTPUT_PRIMARIES: name -> function of the settings, where it puts out other primaries than the working ones;
 * PEAK: name -> function of the settings, the largest light that it puts out for HDR displays, where that is not 1;
 * FROM_DISPLAY: name -> setting -> function of a `spaces.Display`, what a display decides where the user has not.
@@ -20,8 +21,9 @@ Each family is a module with the dict OPERATORS (name -> function), and where th
 
 import numpy as np
 
-from . import (aces, aces_13, aces_20, agx, agx_blender, camera_response, defects, eetf, exposure, false_color, filmic,
-               frostbite, gt7, hable, khronos_neutral, reinhard, somewhat_boring, statistics, uchimura, unreal)
+from . import (aces, aces_13, aces_20, agx, agx_blender, camera_response, defects, eetf, engine_curves, exposure,
+               false_color, ffmpeg, filmic, frostbite, gt7, hable, khronos_neutral, reinhard, somewhat_boring, statistics,
+               uchimura, unreal)
 from .aces import HILL_IN, HILL_OUT, hill_curve
 from .agx import AGX_INSET, AGX_LOG2, AGX_LOOKS, agx_shape, agx_sigmoid, cdl
 from .base import (HALF_MAX, MANTIUK, REC709_WEIGHTS, REC2020_WEIGHTS, apply_curve, curve_contrast, limit_scene, log1p,
@@ -29,12 +31,12 @@ from .base import (HALF_MAX, MANTIUK, REC709_WEIGHTS, REC2020_WEIGHTS, apply_cur
 from .spaces import (DISPLAYS, INPUTS, PRIMARIES, UNIT, power_encode, rgb_to_rgb, rgb_to_xyz, sanitize, srgb_encode,
                      xyz)
 
-FAMILIES = (exposure, reinhard, hable, filmic, uchimura, statistics, aces, aces_13, aces_20, unreal, agx, agx_blender,
-            khronos_neutral, gt7, frostbite, somewhat_boring, eetf, camera_response, false_color, defects)
+FAMILIES = (exposure, reinhard, hable, filmic, uchimura, statistics, ffmpeg, engine_curves, aces, aces_13, aces_20,
+            unreal, agx, agx_blender, khronos_neutral, gt7, frostbite, somewhat_boring, eetf, camera_response, false_color, defects)
 
-OPERATORS, CODE_POWER, WORKING, OUTPUT_PRIMARIES, PEAK, FROM_DISPLAY = ({
+OPERATORS, CODE_POWER, DECODE, WORKING, OUTPUT_PRIMARIES, PEAK, FROM_DISPLAY = ({
     name: value for family in FAMILIES for name, value in getattr(family, kind, {}).items()
-} for kind in ("OPERATORS", "CODE_POWER", "WORKING", "OUTPUT_PRIMARIES", "PEAK", "FROM_DISPLAY"))
+} for kind in ("OPERATORS", "CODE_POWER", "DECODE", "WORKING", "OUTPUT_PRIMARIES", "PEAK", "FROM_DISPLAY"))
 # No name of the command line finds them.
 DEFECTS = tuple(defects.OPERATORS)
 WORKING = {name: WORKING.get(name, "rec709") for name in OPERATORS}
@@ -80,7 +82,9 @@ def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709"
     out = OPERATORS[operator](scene, **settings, **({"look": look} if look else {}))
     if display == "native":
         return out
-    if operator in CODE_POWER:
+    if operator in DECODE:
+        out = DECODE[operator](**settings)(np.maximum(out, 0))
+    elif operator in CODE_POWER:
         out = np.maximum(out, 0) ** CODE_POWER[operator]
     primaries = OUTPUT_PRIMARIES[operator](**settings) if operator in OUTPUT_PRIMARIES else working
     if display == "linear":

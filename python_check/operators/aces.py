@@ -12,8 +12,10 @@ from .spaces import rgb_to_rgb, rgb_to_xyz
 AP1_WEIGHTS = rgb_to_xyz("ap1")[1]
 
 
-def aces_narkowicz(rgb, prescale=1.0, apply="channels", **color):
+def aces_narkowicz(rgb, prescale=1.0, clamp="yes", apply="channels", **color):
     """x(2.51x + 0.03) / (x(2.43x + 0.59) + 0.14) of prescale x; limited to [0, 1] after apply_curve.
+
+    ``clamp=no`` leaves the limit out: PlayCanvas 2.23.3 (TONEMAP_ACES), claygl 1.3.0, Orillusion 0.9.2.
 
     References
     ----------
@@ -28,7 +30,22 @@ def aces_narkowicz(rgb, prescale=1.0, apply="channels", **color):
         x = x * prescale
         return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)
 
-    return np.clip(apply_curve(f, limit_scene(rgb), apply, **color), 0, 1)
+    out = apply_curve(f, limit_scene(rgb), apply, **color)
+    return np.clip(out, 0, 1) if clamp == "yes" else out
+
+
+def aces_cesium(rgb, apply="channels", **color):
+    """(x(x + 0.065) - 0.0001) / (x(0.985x + 0.433) + 0.238), limited to [0, 1].
+
+    References
+    ----------
+    CesiumJS (Apache-2.0), @cesium/engine 26.3.0, AcesTonemappingStage. The form is Hill's, see hill_curve.
+
+    >>> aces_cesium([0.18, 1, 4]).round(6).tolist()
+    [0.12649, 0.643056, 0.917084]
+    """
+    return np.clip(apply_curve(lambda x: (x * (x + 0.065) - 0.0001) / (x * (0.985 * x + 0.433) + 0.238),
+                               limit_scene(rgb), apply, **color), 0, 1)
 
 
 HILL_IN = np.array([[0.59719, 0.35458, 0.04823], [0.07600, 0.90834, 0.01566], [0.02840, 0.13383, 0.83777]])
@@ -156,5 +173,47 @@ def aces_filament(rgb, brightness=1.0):
     return saturate(x, 0.93) @ np.linalg.inv(to_ap1).T
 
 
-OPERATORS = {f.__name__: f for f in (aces_narkowicz, aces_hill, aces_filament)}
+# @galacean/engine-core 1.6.13 (MIT), ColorTransform: digits as it prints them.
+GALACEAN_TO_AP0 = np.array([[0.4397010, 0.3829780, 0.1773350], [0.0897923, 0.8134230, 0.0967616],
+                            [0.0175440, 0.1115440, 0.8707040]])
+GALACEAN_AP0_TO_AP1 = np.array([[1.4514393161, -0.2365107469, -0.2149285693], [-0.0765537734, 1.1762296998, -0.0996759264],
+                                [0.0083161484, -0.0060324498, 0.9977163014]])
+GALACEAN_AP1_TO_XYZ = np.array([[0.6624541811, 0.1340042065, 0.1561876870], [0.2722287168, 0.6740817658, 0.0536895174],
+                                [-0.0055746495, 0.0040607335, 1.0103391003]])
+GALACEAN_XYZ_TO_AP1 = np.array([[1.6410233797, -0.3248032942, -0.2364246952], [-0.6636628587, 1.6153315917, 0.0167563477],
+                                [0.0117218943, -0.0082844420, 0.9883948585]])
+GALACEAN_D60_TO_D65 = np.array([[0.987224, -0.00611327, 0.0159533], [-0.00759836, 1.00186, 0.00533002],
+                                [0.00307257, -0.00509595, 1.08168]])
+GALACEAN_XYZ_TO_709 = np.array([[3.2409699419, -1.5373831776, -0.498610760], [-0.9692436363, 1.8759675015, 0.0415550574],
+                                [0.0556300797, -0.2039769589, 1.0569715142]])
+
+
+def aces_galacean(rgb):
+    """Glow, red, saturation 0.96, Hill's curve, dim surround, saturation 0.93, and the way to Rec.709; not limited.
+
+    References
+    ----------
+    Galacean (MIT), @galacean/engine-core 1.6.13, ACESTonemap. It floors X + Y + Z and y at 1e-4; here only luminance
+    below 5e-7 fades to black.
+
+    >>> aces_galacean([0.18, 0.18, 0.18]).round(6).tolist()
+    [0.110195, 0.110172, 0.11014]
+    """
+    weights = GALACEAN_AP1_TO_XYZ[1]
+
+    def mixed(c, factor):
+        gray = (c * weights).sum(-1, keepdims=True)
+        return gray + factor * (c - gray)
+
+    ap0 = limit_scene(rgb) @ GALACEAN_TO_AP0.T
+    saturation = saturation_of(ap0, 1e-4)
+    ap0 = red_modifier(glow(ap0, saturation), saturation)
+    x = hill_curve(mixed(np.maximum(ap0 @ GALACEAN_AP0_TO_AP1.T, 0), 0.96))
+    xyz = x @ GALACEAN_AP1_TO_XYZ.T
+    y = xyz[..., 1:2]
+    xyz = np.where(y > 0, xyz * np.where(y > 0, y, 1) ** (0.9811 - 1) * np.minimum(y / 5e-7, 1), 0)
+    return mixed(xyz @ GALACEAN_XYZ_TO_AP1.T, 0.93) @ (GALACEAN_XYZ_TO_709 @ GALACEAN_D60_TO_D65 @ GALACEAN_AP1_TO_XYZ).T
+
+
+OPERATORS = {f.__name__: f for f in (aces_narkowicz, aces_cesium, aces_hill, aces_filament, aces_galacean)}
 WORKING = {"aces_filament": "rec2020"}  # operator -> working primaries, where not "rec709"

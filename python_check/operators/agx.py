@@ -3,7 +3,8 @@
 
 import numpy as np
 
-from .base import limit_scene, luminance
+from .base import HALF_MAX, limit_scene, luminance
+from .spaces import rgb_to_rgb
 
 AGX_INSET = np.array([[0.842479062253094, 0.0784335999999992, 0.0792237451477643],
                       [0.0423282422610123, 0.878468636469772, 0.0791661274605434],
@@ -114,8 +115,11 @@ THREE_TO_2020 = np.array([[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0113], [0
 THREE_TO_709 = np.array([[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]])
 
 
-def agx_threejs(rgb):
+def agx_threejs(rgb, clamp="no", matrices="printed"):
     """Wrensch's polynomial between Blender's Rec.2020 inset and outset; display-linear Rec.709, not yet limited.
+
+    ``clamp=yes`` limits to [0, 1], as three.js does since r161. ``matrices=exact``: hdrify 1.2.1 (MIT), which takes
+    Rec.709 <-> Rec.2020 from the primaries.
 
     The one operator here that does not limit its input at 0: negatives go through the first matrices, where the
     floor of 1e-10 before the logarithm takes what is left of them.
@@ -127,9 +131,32 @@ def agx_threejs(rgb):
     >>> agx_threejs([0.8, 0.1, 0.05]).round(9).tolist()
     [0.607619019, 0.177156407, 0.1125247]
     """
-    x = np.asarray(rgb, float) @ THREE_TO_2020.T @ INSET_2020.T
+    to_2020, to_709 = THREE_TO_2020, THREE_TO_709
+    if matrices == "exact":
+        to_2020, to_709 = rgb_to_rgb("rec709", "rec2020"), rgb_to_rgb("rec2020", "rec709")
+    x = np.asarray(rgb, float) @ to_2020.T @ INSET_2020.T
     code = np.polyval(AGX_POLYNOMIALS[6], agx_shape(np.maximum(x, 1e-10))) @ OUTSET_2020.T
-    return np.maximum(code, 0) ** 2.2 @ THREE_TO_709.T
+    light = np.maximum(code, 0) ** 2.2 @ to_709.T
+    return np.clip(light, 0, 1) if clamp == "yes" else light
+
+
+def agx_needle(rgb):
+    """Wrensch's AgX of max(x, 0.001), a look about the luma from before its power, the inverse inset, power 2.2.
+
+    The look: slope 1.05, power 1.1, saturation 1.15. Display-linear Rec.709, may exceed 1.
+
+    References
+    ----------
+    Needle Engine, @needle-tools/engine 4.16.5, engine_tonemapping.ts, which replaces three.js's chunk.
+
+    >>> agx_needle([0.18, 0.18, 0.18]).round(6).tolist()
+    [0.205799, 0.205852, 0.205856]
+    """
+    n = agx_shape(np.clip(np.asarray(rgb, float), 0.001, HALF_MAX) @ AGX_INSET.T)
+    code = np.polyval(AGX_POLYNOMIALS[6], n)
+    luma = luminance(code)
+    code = (luma + 1.15 * ((1.05 * code) ** 1.1 - luma)) @ np.linalg.inv(AGX_INSET).T
+    return np.maximum(code, 0) ** 2.2
 
 
 def agx_filament(rgb, look=""):
@@ -208,7 +235,8 @@ def agx_godot(rgb, contrast=1.25, white=16.29, output_max=1.0):
     return np.minimum(np.where(x < gray, power / (power + a), shoulder), output_max) @ GODOT_OUT.T
 
 
-OPERATORS = {f.__name__: f for f in (agx_sobotka, agx_minimal, agx_threejs, agx_filament, agx_godot44, agx_godot)}
+OPERATORS = {f.__name__: f for f in (agx_sobotka, agx_minimal, agx_threejs, agx_needle, agx_filament, agx_godot44,
+                                     agx_godot)}
 WORKING = {"agx_filament": "rec2020"}  # operator -> working primaries, where not "rec709"
 # Operators that put out code values, and the power that decodes them.
 CODE_POWER = {"agx_sobotka": 2.2, "agx_minimal": 2.2}

@@ -115,7 +115,7 @@ def bt2446a(rgb, **common):
     return map_range(curve, rgb, **common)
 
 
-def spline(rgb, contrast=0.5, average=0.0, **common):
+def spline(rgb, contrast=0.5, average=0.0, apply="luminance", **common):
     """A quadratic and a cubic in PQ that meet at the picture's average with the same slope.
 
     `average` is the scene's average in cd/m2; 0, unknown, takes 0.4 of the source's range. `contrast` 0 gives the
@@ -125,7 +125,9 @@ def spline(rgb, contrast=0.5, average=0.0, **common):
     ----------
     libplacebo, tone_mapping.c, its default `spline` (the facts of its formula, knee adaptation 0.4).
 
-    >>> (100 * spline([0.18, 0.5, 1.0])).round(8).tolist()
+    libplacebo puts the curve on I of an IPT. `apply` is luminance, because that comes closer than channels.
+
+    >>> (100 * spline([0.18, 0.5, 1.0], apply="channels")).round(8).tolist()
     [10.52697221, 23.4649935, 36.15717847]
     """
 
@@ -147,7 +149,7 @@ def spline(rgb, contrast=0.5, average=0.0, **common):
         y = np.where(x.real <= 0, (pa * x + slope) * x, ((qa * x + qb) * x + slope) * x)
         return pq_decode(limit(y + dst, dmin, dmax))
 
-    return map_range(curve, rgb, **common)
+    return map_range(curve, rgb, apply=apply, **common)
 
 
 OPERATORS = {f.__name__: f for f in (bt2390, bt2446a, spline)}

@@ -9,13 +9,18 @@ import numpy as np
 from .base import apply_curve, limit_scene, log1p
 
 
-def clamp(rgb):
-    """Limit each channel to [0, 1]: no tone mapping, the baseline.
+def clamp(rgb, apply="channels"):
+    """Limit each channel to [0, 1]: no tone mapping, the baseline. ``apply=max`` divides by a largest channel above 1.
 
     >>> clamp([-0.1, 0.18, 4]).tolist()
     [0.0, 0.18, 1.0]
+    >>> clamp([2.0, 1, 0.5], apply="max").tolist()
+    [1.0, 0.5, 0.25]
     """
-    return np.clip(np.asarray(rgb, float), 0, 1)
+    if apply == "channels":
+        return np.clip(np.asarray(rgb, float), 0, 1)
+    rgb = limit_scene(rgb)
+    return rgb / np.maximum(rgb.max(-1, keepdims=True), 1)
 
 
 def linear(rgb, divisor=4.0, apply="channels", **color):

@@ -19,8 +19,10 @@ def cineon(x):
     return x * (6.2 * x + 0.5) / (x * (6.2 * x + 1.7) + 0.06)
 
 
-def hejl_burgess_dawson(rgb, apply="channels", **color):
-    """Cineon curve of max(x - 0.004, 0). Code values of a 2.2 power.
+def hejl_burgess_dawson(rgb, output="code_values", apply="channels", **color):
+    """Cineon curve of max(x - 0.004, 0). Code values of a 2.2 power; with ``output=squared`` light, their square.
+
+    Babylon.js (@babylonjs/core 9.35.0, TonemapPostProcess) squares.
 
     References
     ----------
@@ -29,7 +31,9 @@ def hejl_burgess_dawson(rgb, apply="channels", **color):
     >>> hejl_burgess_dawson([0.18, 0.18, 0.18]).round(9).tolist()
     [0.508028282, 0.508028282, 0.508028282]
     """
-    return apply_curve(lambda x: cineon(np.maximum(x - 0.004, 0)), limit_scene(rgb), apply, code_power=2.2, **color)
+    power, code_power = (2, None) if output == "squared" else (1, 2.2)
+    return apply_curve(lambda x: cineon(np.maximum(x - 0.004, 0)) ** power, limit_scene(rgb), apply,
+                       code_power=code_power, **color)
 
 
 def hejl_2015_curve(x):
@@ -206,3 +210,5 @@ def toe(rgb, form="quadratic", width=0.05, strength=1.0, brightness=0.0, contras
 OPERATORS = {f.__name__: f for f in (hejl_burgess_dawson, hejl_2015, aldridge, lottes, filament_generic, ue3, day,
                                      schlick, toe)}
 CODE_POWER = {"hejl_burgess_dawson": 2.2, "aldridge": 2.2, "ue3": 2.2}
+DECODE = {"hejl_burgess_dawson": lambda output="code_values", **_: (
+    lambda code: code**(1 if output == "squared" else CODE_POWER["hejl_burgess_dawson"]))}

@@ -37,8 +37,11 @@ def hable(rgb, shoulder_strength=0.15, linear_strength=0.50, linear_angle=0.10, 
                        limit_scene(rgb), apply, **color)
 
 
-def hable_gdc(rgb, white=11.2, exposure_bias=1.0, apply="channels", **color):
+def hable_gdc(rgb, white=11.2, exposure_bias=1.0, black=0.0, apply="channels", **color):
     """Hable's curve with A 0.22, B 0.30, C 0.10, D 0.20, E 0.01, F 0.30, without a bias.
+
+    ``black`` is subtracted from the scene value after the bias: 0.004 in PlayCanvas 2.23.3 (TONEMAP_HEJL), which
+    multiplies the curve by 1.25, as this does with a white where it is 0.8.
 
     References
     ----------
@@ -47,7 +50,13 @@ def hable_gdc(rgb, white=11.2, exposure_bias=1.0, apply="channels", **color):
     >>> hable_gdc([0.18, 1, 11.2]).round(9).tolist()  # 0.18: (0.014528 / 0.121128 - 1/30) / 0.867301
     [0.099856784, 0.462526102, 1.0]
     """
-    return hable(rgb, 0.22, 0.30, 0.10, 0.20, 0.01, 0.30, white, exposure_bias, apply, **color)
+    constants = (0.22, 0.30, 0.10, 0.20, 0.01, 0.30)
+
+    def f(x):
+        x = exposure_bias * x - black
+        return hable_curve(np.where(x.real > 0, x, 0), *constants) / hable_curve(white, *constants)
+
+    return apply_curve(f, limit_scene(rgb), apply, **color)
 
 
 def hable_piecewise(rgb, toe_strength=0.0, toe_length=0.5, shoulder_strength=0.0, shoulder_length=0.5,

@@ -47,4 +47,23 @@ def khronos_neutral_filament(rgb, start_compression=0.8, desaturation=0.15):
     return compress(rgb, start_compression, desaturation, 1.0)
 
 
-OPERATORS = {f.__name__: f for f in (khronos_neutral, khronos_neutral_filament)}
+def khronos_neutral_needle(rgb):
+    """Colors below 0.8 stay; above, the peak is compressed and mixed towards 1 by the light beyond 0.8 of all channels.
+
+    References
+    ----------
+    Needle Engine, @needle-tools/engine 4.16.5, engine_tonemapping.ts: model-viewer's first commerce tone mapper
+    (github.com/google/model-viewer/pull/4495).
+
+    >>> khronos_neutral_needle([2.0, 1.0, 0.5]).round(6).tolist()
+    [0.978836, 0.619048, 0.439153]
+    """
+    c = limit_scene(rgb)
+    largest = c.max(-1, keepdims=True)
+    peak = np.maximum(largest, 0.8)
+    brightness = c.sum(-1, keepdims=True) * (1 - 0.8 / peak)
+    kept = 3 / (0.5 * brightness + 3)
+    return np.where(largest < 0.8, c, c * (1 - 0.04 / (peak - 0.6)) / peak * kept + 1 - kept)
+
+
+OPERATORS = {f.__name__: f for f in (khronos_neutral, khronos_neutral_filament, khronos_neutral_needle)}

@@ -6,10 +6,14 @@
 
 import numpy as np
 
-from .base import REC709_WEIGHTS, apply_curve, limit_scene, luminance
+from .base import HALF_MAX, REC709_WEIGHTS, apply_curve, limit_scene, luminance
+
+# Luminance in Babylon.js' tonemapPixelShader (@babylonjs/core 9.35.0) and in lygia 1.4.1.
+WEIGHTS = {"rec709": REC709_WEIGHTS, "babylon": np.array([0.22, 0.707, 0.071]),
+           "lygia": np.array([0.21250175, 0.71537574, 0.07212251])}
 
 
-def reinhard(rgb, apply="channels", **color):
+def reinhard(rgb, weights="rec709", apply="channels", **color):
     """f(x) = x / (1 + x).
 
     References
@@ -20,7 +24,7 @@ def reinhard(rgb, apply="channels", **color):
     >>> reinhard([0.18, 1, 4]).round(9).tolist()
     [0.152542373, 0.5, 0.8]
     """
-    return apply_curve(lambda x: x / (1 + x), limit_scene(rgb), apply, **color)
+    return apply_curve(lambda x: x / (1 + x), limit_scene(rgb), apply, weights=WEIGHTS[weights], **color)
 
 
 def extended(x, white):
@@ -48,8 +52,27 @@ def reinhard_extended(rgb, white=4.0, apply="channels", **color):
     return apply_curve(lambda x: extended(x, white), limit_scene(rgb), apply, **color)
 
 
-def reinhard_jodie(rgb):
+def reinhard2(rgb, middle_grey=0.6, white=4.0, average=1.0, clamp="yes"):
+    """Color times extended(L middle_grey / average, white), without the division by L; limited to [0, 1].
+
+    ``clamp=no`` with white 16: three-stdlib 2.36.1, ToneMapShader.
+
+    References
+    ----------
+    postprocessing 6.39.6 (Zlib), REINHARD2.
+
+    >>> reinhard2([0.18, 0.18, 0.18]).round(6).tolist()
+    [0.017664, 0.017664, 0.017664]
+    """
+    c = limit_scene(rgb)
+    c = c * extended(luminance(c) * (middle_grey / average), white)
+    return np.clip(c, 0, 1) if clamp == "yes" else c
+
+
+def reinhard_jodie(rgb, weights="rec709"):
     """Blend of Reinhard on luminance, C/(1+L), and per channel, t = C/(1+C), with t as the weight.
+
+    ``weights=lygia``: tonemapReinhardJodie of lygia 1.4.1.
 
     References
     ----------
@@ -60,7 +83,7 @@ def reinhard_jodie(rgb):
     """
     c = limit_scene(rgb)
     t = c / (1 + c)
-    return (1 - t) * (c / (1 + luminance(c))) + t * t
+    return (1 - t) * (c / (1 + luminance(c, WEIGHTS[weights]))) + t * t
 
 
 def reinhard_constant_luminance(rgb):
@@ -119,5 +142,42 @@ def reinhard_devlin(rgb, intensity=0.0, contrast=0.6, chromatic_adaptation=0.0, 
     return np.where(rgb > 0, rgb / np.where(rgb > 0, rgb + half, 1), 0)
 
 
-OPERATORS = {f.__name__: f for f in (reinhard, reinhard_extended, reinhard_jodie, reinhard_constant_luminance, nebula,
-                                     reinhard_devlin)}
+# Gray of OpenCV's Tonemap classes: cvtColor(RGB2GRAY) of pictures whose first channel is blue.
+OPENCV_WEIGHTS = np.array([0.114, 0.587, 0.299])
+
+
+def opencv_reinhard(rgb, intensity=0.0, light_adaptation=1.0, color_adaptation=0.0, minimum=0.0, maximum=1.0,
+                    contrast=0.6, mean_red=0.5, mean_green=0.5, mean_blue=0.5, mean_gray=0.5, output_minimum=0.0,
+                    output_maximum=0.0):
+    """x / (x + (e^-intensity A)^contrast) of x = (v - minimum) / (maximum - minimum), stretched to its own range.
+
+    A mixes pixel and picture as in reinhard_devlin; gray is 0.114 r + 0.587 g + 0.299 b. `output_maximum` 0 stands
+    for the result at x = (1, 1, 1). The means are scene values.
+
+    References
+    ----------
+    OpenCV 4.6.0 (Apache-2.0), photo/src/tonemap.cpp, TonemapReinhard.
+
+    >>> opencv_reinhard([0.25, 1.0, 4.0], light_adaptation=0, maximum=4, mean_gray=1, contrast=1).round(9).tolist()
+    [0.25, 0.625, 1.0]
+    """
+    c, a = color_adaptation, light_adaptation
+    span = maximum - minimum
+    if span <= 0:
+        raise ValueError(f"maximum={maximum}; expected above minimum={minimum}")
+
+    def formed(x):
+        gray = luminance(x, OPENCV_WEIGHTS)
+        local = c * x + (1 - c) * gray
+        whole = c * (np.array([mean_red, mean_green, mean_blue]) - minimum) / span + (1 - c) * (mean_gray - minimum) / span
+        half = np.maximum(np.exp(-intensity) * (a * local + (1 - a) * whole), 0) ** contrast
+        return np.where(x > 0, x / np.where(x > 0, x + half, 1), 0)
+
+    high = output_maximum if output_maximum > 0 else formed(np.ones(3)).max()
+    if high <= output_minimum:
+        raise ValueError(f"output_minimum={output_minimum}; expected below {high}")
+    return (formed(np.clip((limit_scene(rgb) - minimum) / span, 0, HALF_MAX)) - output_minimum) / (high - output_minimum)
+
+
+OPERATORS = {f.__name__: f for f in (reinhard, reinhard_extended, reinhard2, reinhard_jodie,
+                                     reinhard_constant_luminance, nebula, reinhard_devlin, opencv_reinhard)}

@@ -6,16 +6,18 @@
 
 import numpy as np
 
-from .base import apply_curve, limit_scene, log1p
+from .base import HALF_MAX, apply_curve, limit_scene, log1p
+from .reinhard import OPENCV_WEIGHTS
 
 # The XYZ rows that stand with the rod formula.
 ROD_XYZ = np.array([[0.412453, 0.357580, 0.180423], [0.212671, 0.715160, 0.072169], [0.019334, 0.119193, 0.950227]])
 
 
-def drago(rgb, bias=0.85, display_max=100.0, log_average=1.0, maximum=100.0, apply="luminance", **color):
+def drago(rgb, bias=0.85, bias_scales_average="yes", display_max=100.0, log_average=1.0, maximum=100.0,
+          apply="luminance", **color):
     """Logarithm whose base grows from 2 to 10 with x: maximum becomes display_max / 100.
 
-    With the world adaptation a = log_average / (1 + bias - 0.85)^5, l = x/a, m = maximum/a:
+    With the world adaptation a = log_average / (1 + bias - 0.85)^5 (pfstmo: log_average), l = x/a, m = maximum/a:
     (display_max / 100) / log10(1 + m) ln(1 + l) / ln(2 + 8 (l/m)^(ln bias / ln 0.5)). Without the paper's gamma.
 
     References
@@ -26,11 +28,39 @@ def drago(rgb, bias=0.85, display_max=100.0, log_average=1.0, maximum=100.0, app
     >>> drago([0.8, 0.1, 0.05]).round(9).tolist()
     [0.259643661, 0.032455458, 0.016227729]
     """
-    adaptation = log_average / (1 + bias - 0.85) ** 5
+    adaptation = log_average / (1 + bias - 0.85) ** 5 if bias_scales_average == "yes" else log_average
     scale = display_max / 100 / np.log10(1 + maximum / adaptation)
     exponent = np.log(bias) / np.log(0.5)
     return apply_curve(lambda x: scale * log1p(x / adaptation) / np.log(2 + 8 * (x / maximum) ** exponent),
                        limit_scene(rgb), apply, **color)
+
+
+def opencv_drago(rgb, bias=0.85, minimum=0.0, maximum=1.0, log_average=0.5, maximum_gray=1.0, output_minimum=0.0,
+                 output_maximum=0.0, apply="luminance", **color):
+    """Drago's logarithm of the gray g/a of x = (v - minimum) / (maximum - minimum), stretched to its own range.
+
+    ln(1 + g/a) / ln(2 + 8 (g/m)^(ln bias / ln 0.5)), m the largest gray. Averages and grays are scene values;
+    gray is 0.114 r + 0.587 g + 0.299 b. `output_maximum` 0 stands for the result at g = m.
+
+    References
+    ----------
+    OpenCV 4.6.0 (Apache-2.0), photo/src/tonemap.cpp, TonemapDrago.
+
+    >>> opencv_drago([1.0, 1.0, 1.0]).round(9).tolist()
+    [1.0, 1.0, 1.0]
+    """
+    span = maximum - minimum
+    average, largest = (log_average - minimum) / span, (maximum_gray - minimum) / span
+    if span <= 0 or average <= 0 or largest <= 0:
+        raise ValueError("minimum at or above the average, the largest gray or the maximum; expected below them")
+    exponent = np.log(bias) / np.log(0.5)
+    high = output_maximum if output_maximum > 0 else np.log1p(largest / average) / np.log(10)
+    if high <= output_minimum:
+        raise ValueError(f"output_minimum={output_minimum}; expected below {high}")
+    x = np.clip((limit_scene(rgb) - minimum) / span, 0, HALF_MAX)
+    out = apply_curve(lambda g: log1p(g / average) / np.log(2 + 8 * (g / largest) ** exponent), x, apply,
+                      weights=OPENCV_WEIGHTS, **color)
+    return (out - output_minimum) / (high - output_minimum)
 
 
 def ward(rgb, display_max=80.0, log_average=0.5, apply="luminance", **color):
@@ -157,4 +187,5 @@ def durand_dorsey_rods(rgb, display_max=80.0, photopic_adaptation=2.0, scotopic_
     return cones_and_rods(rgb, display_max, photopic_adaptation, scotopic_adaptation, k, shift)
 
 
-OPERATORS = {f.__name__: f for f in (drago, ward, tumblin_rushmeier, ferwerda, durand_dorsey_rods)}
+OPERATORS = {f.__name__: f for f in (drago, opencv_drago, ward, tumblin_rushmeier, ferwerda,
+                                     durand_dorsey_rods)}

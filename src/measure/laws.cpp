@@ -572,7 +572,8 @@ Differences declared_differences(const ResolvedOperator& op) {
             if (special ? is_special(d) : d.when.empty()) declared[d.kind] = d.value;
         }
     }
-    if (declared.contains(Kind::black) && declared[Kind::black] == 0) declared.erase(Kind::black);
+    for (const Kind kind : {Kind::black, Kind::not_monotone})
+        if (declared.contains(kind) && declared[kind] == 0) declared.erase(kind);
     return declared;
 }
 

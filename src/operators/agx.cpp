@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// AgX, six dialects: Troy Sobotka's configuration, Benjamin Wrensch's minimal version, and the
-// versions of three.js, Filament and Godot (4.4, and since 4.6).
+// AgX, seven dialects: Troy Sobotka's configuration, Benjamin Wrensch's minimal version, and the
+// versions of three.js, Filament, Godot (4.4, and since 4.6) and Needle Engine.
 //
 // Source    T. Sobotka, AgX OpenColorIO configuration (github.com/sobotka/AgX), 2022, and the
 //           SB2383 sigmoid that its lookup table samples. B. Wrensch, "Minimal AgX Implementation",
 //           iolite-engine.com, 2023-09-06. three.js, tonemapping_pars_fragment, AgXToneMapping.
 //           Google Filament, ToneMapper.cpp, AgxToneMapper. Godot Engine, tonemap.glsl of 4.4 and
-//           of 4.6 (curve by allenwp). Insets and outsets of three.js, Filament and Godot are those
-//           of Blender: E. Chow, AgX_LUT_Gen.
+//           of 4.6 (curve by allenwp). three.js r160, and r161 with its last clamp; hdrify 1.2.1 in
+//           double precision. Needle Engine, @needle-tools/engine 4.16.5. Insets and outsets of
+//           three.js, Filament and Godot are those of Blender: E. Chow, AgX_LUT_Gen.
 // In        scene-linear RGB; working primaries Rec.709 (agx_filament Rec.2020), D65; domain [0,
 //           inf), negatives clamped at 0. agx_threejs passes negatives to its matrices and clamps
 //           their result: domain (-inf, inf). All except agx_godot are constant above 16.29, 6.5
@@ -16,13 +17,13 @@
 // Out       agx_sobotka, agx_minimal: CODE VALUES of a 2.2 power, [0, 1], except for agx_minimal's
 //           polynomial ends of -0.0023 and 0.9986 (order 6), 0.0029 and 0.982 (order 7), and looks
 //           that saturate above 1. The others: display-linear RGB, 1.0 = display peak; agx_threejs
-//           without the source's last clamp, agx_godot44 and agx_godot like the source: their last
-//           matrices put saturated colors below 0 or above 1.
-// Kind      clamp, matrix, log and sigmoid, (matrix). The looks of agx_filament are 3D, because
-//           their luma is taken before the power. Monotone on the neutral axis: yes, with two
-//           exceptions. Order 7 (agx_minimal:order7, agx_filament) dips in the lowest 2.5 % of its
-//           range. In agx_threejs and agx_godot44, the channels of grays reach the end of the
-//           shaper one after another, so the last matrix subtracts 5e-6.
+//           without the last clamp that three.js has since r161 (agx_threejs:r161), agx_godot44 and
+//           agx_godot like the source: their last matrices put saturated colors below 0 or above 1.
+// Kind      clamp, matrix, log and sigmoid, (matrix). agx_needle and the looks of agx_filament are
+//           3D, because their luma is taken before the power. Monotone on the neutral axis: yes,
+//           with two exceptions. Order 7 (agx_minimal:order7, agx_filament) dips in the lowest 2.5
+//           % of its range. In agx_threejs and agx_godot44, the channels of grays reach the end of
+//           the shaper one after another, so the last matrix subtracts 5e-6.
 // Keeps     mid gray 0.18 -> code value 0.5 (agx_sobotka), display-linear 0.18 (agx_godot, and
 //           agx_godot44 within 0.5 %).
 // Differs   agx_sobotka computes the sigmoid in closed form; the configuration has a 4096-entry
@@ -30,6 +31,7 @@
 //           lower end of the shaper, 1.76e-4, is the floor. Godot's floor of 2e-10 on the input
 //           stays. agx_filament's looks use the luma weights of Rec.709 although its primaries are
 //           Rec.2020; the source does the same.
+//           agx_needle: a value below 0 before the last power is 0, where the source has NaN.
 //           Defects: the source of agx_minimal_clamped has no floor. Below the shaper its
 //           polynomial leaves its range and shows 1e-6 as white; here the end of the shaper is the
 //           floor.
@@ -223,10 +225,20 @@ Operator threejs() {
     op.negatives =
         "kept by the matrix to Rec.2020 and the inset; then limited to the lower end of the "
         "shaper's range";
+    op.parameters = {
+        choice_parameter("clamp", {"no", "yes"}, "no",
+                         "limit the result to [0, 1]; three.js does so since r161"),
+        choice_parameter("matrices", {"printed", "exact"}, "printed",
+                         "between Rec.709 and Rec.2020: the four digits that three.js prints, or "
+                         "those of the primaries")};
+    op.presets = {
+        {"r161", "three.js r161 and later, gainmap-js: limited to [0, 1]", {{"clamp", "yes"}}},
+        {"hdrify", "hdrify: exact matrices", {{"matrices", "exact"}}}};
     op.warnings = {"grays get darker by 5e-6 at scene-linear 16.3, where the shaper ends"};
     op.differences = {{DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
-                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
-    op.build = [](const Params&) -> Pipeline {
+                      {DocumentedDifference::Kind::not_monotone, 16, ""},
+                      {DocumentedDifference::Kind::not_monotone, 0, "hdrify"}};
+    op.build = [](const Params& p) -> Pipeline {
         // Rec.709 to Rec.2020 and its inverse, as the source prints them: 0.0113 is not the rounded
         // value.
         // clang-format off
@@ -237,18 +249,23 @@ Operator threejs() {
                                         {-0.1246,  1.1329, -0.0083},
                                         {-0.0182, -0.1006,  1.1187}}};
         // clang-format on
-        const Pipeline stages = {
-            MatrixStage{to_rec2020, "to_rec2020"}, MatrixStage{kAgxInsetRec2020, "inset"},
+        const bool is_exact = p.choice("matrices") == "exact";
+        const Matrix3 in = is_exact ? rgb_to_rgb(kRec709, kRec2020) : to_rec2020;
+        const Matrix3 out = is_exact ? rgb_to_rgb(kRec2020, kRec709) : to_rec709;
+        Pipeline stages = {
+            MatrixStage{in, "to_rec2020"}, MatrixStage{kAgxInsetRec2020, "inset"},
             limit_to_shaper(),
             named("contrast", curve_stage(polynomial6(normalized_log(Expr::input()))))};
-        return stages + outset_to_light() + Pipeline{MatrixStage{to_rec709, "to_rec709"}};
+        stages = stages + outset_to_light() + Pipeline{MatrixStage{out, "to_rec709"}};
+        if (p.choice("clamp") == "yes") stages.emplace_back(ClampStage{0, 1});
+        return stages;
     };
     return op;
 }
 
-/// Filament's look on code values: a CDL that saturates about the luma from before slope and power,
-/// which no chain of curves and matrices can express.
-CrossTalkStage filament_look(const Vector3& slope, double power, double saturation) {
+/// The look of Filament and Needle on code values: a CDL that saturates about the luma from before
+/// slope and power, which no chain of curves and matrices can express.
+CrossTalkStage look_about_first_luma(const Vector3& slope, double power, double saturation) {
     const std::array<Expr, 3> v = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr luma =
         kRec709Weights[0] * v[0] + kRec709Weights[1] * v[1] + kRec709Weights[2] * v[2];
@@ -256,6 +273,35 @@ CrossTalkStage filament_look(const Vector3& slope, double power, double saturati
     for (std::size_t i = 0; i < 3; ++i)
         look.f[i] = luma + saturation * (pow(slope[i] * v[i], power) - luma);
     return look;
+}
+
+Operator needle() {
+    Operator op;
+    op.id = "agx_needle";
+    op.title = "AgX (Needle Engine)";
+    op.view = "AgX Needle";
+    op.character =
+        "the minimal AgX with a look of its own: more contrast and saturation; black is lifted";
+    op.source = "Needle Engine, @needle-tools/engine 4.16.5, engine_tonemapping.ts: patchAGX";
+    op.license = "published code; formula and constants only; none of its code is used";
+    op.dialects = "AgX";
+    op.negatives = "set to 0.001, like everything below it, before the first matrix";
+    op.warnings = {"grays get darker by 1e-5 at scene-linear 16.3, where the shaper ends"};
+    op.differences = {{DocumentedDifference::Kind::black, 4.1e-5, ""},
+                      {DocumentedDifference::Kind::exceeds_white, 1.14, ""},
+                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
+    op.build = [](const Params&) -> Pipeline {
+        return {ClampStage{0.001, kHalfMax},
+                MatrixStage{kInset, "inset"},
+                limit_to_shaper(),
+                named("contrast", curve_stage(polynomial6(normalized_log(Expr::input())))),
+                ClampStage{0, 1},  // no effect: the polynomial stays inside above 0.001
+                look_about_first_luma({1.05, 1.05, 1.05}, 1.10, 1.15),
+                MatrixStage{kOutset, "outset"},
+                ClampStage{0, kInfinity},
+                named("to_light", curve_stage(pow(Expr::input(), 2.2)))};
+    };
+    return op;
 }
 
 Operator filament() {
@@ -298,8 +344,8 @@ Operator filament() {
             named("contrast", curve_stage(polynomial7(normalized_log(Expr::input()))))};
         if (!p.look().empty()) {
             stages.push_back(ClampStage{0, 1});  // no effect: the polynomial stays inside
-            stages.push_back(p.look() == "golden" ? filament_look({1, 0.9, 0.5}, 0.8, 1.3)
-                                                  : filament_look({1, 1, 1}, 1.35, 1.4));
+            stages.push_back(p.look() == "golden" ? look_about_first_luma({1, 0.9, 0.5}, 0.8, 1.3)
+                                                  : look_about_first_luma({1, 1, 1}, 1.35, 1.4));
         }
         return stages + outset_to_light();
     };
@@ -358,6 +404,9 @@ Operator godot() {
         "for HDR";
     op.source = "Godot Engine 4.6, tonemap.glsl: tonemap_agx; curve by allenwp";
     op.license = "MIT";
+    op.warnings = {
+        "equal to Godot's Forward+ and Mobile; Compatibility, which encodes without the linear "
+        "segment of sRGB, differs by up to 3 8-bit code values near black"};
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.parameters = {
@@ -402,8 +451,8 @@ Operator godot() {
 }  // namespace
 
 std::vector<Operator> define_agx() {
-    return {sobotka(), minimal(), threejs(),         filament(),
-            godot44(), godot(),   minimal_clamped(), matrix_and_power()};
+    return {sobotka(), minimal(), threejs(),         filament(),        godot44(),
+            godot(),   needle(),  minimal_clamped(), matrix_and_power()};
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -17,7 +17,13 @@
 //           neutral axis: yes with the defaults; bt2446a as printed jumps up where its segments
 //           meet, by 0.0006 and 0.00001 of Yc.
 // Keeps     source_black -> target_black, source_peak -> target_peak (except as under Out).
-// Differs   bt2446a is the Report's curve without its color correction: method A works on Y' of
+// Differs   bt2390:libplacebo and spline scale luminance; libplacebo puts its curves on I of an IPT
+// and
+//           then maps the gamut. Colors of a chart are 2 code values of 8 bits from it on average;
+//           on channels, 4 to 6. libplacebo subtracts the display's black from SDR code values, and
+//           target_black above source_black needs apply=channels or hue_preserving. mpv's output
+//           `gpu`, before gpu-next, is the Report's bt2390 with apply=max.
+//           bt2446a is the Report's curve without its color correction: method A works on Y' of
 //           gamma-encoded Y'CbCr; here `apply` chooses what the curve works on. The result is
 //           limited to target_black, which a knee below 0 (large knee_offset) would undercut.
 //           Without compression (source peak at or below target peak) only the source's limits
@@ -65,7 +71,7 @@ double output_unit(const Params& p) {
     return p.choice("output") == "hdr" ? 100 : p.number("target_peak");
 }
 
-std::vector<ParameterSpec> with_limits(std::vector<ParameterSpec> own) {
+std::vector<ParameterSpec> with_limits(std::string default_apply, std::vector<ParameterSpec> own) {
     std::vector<ParameterSpec> all = {
         number_parameter("source_peak", "cd/m2", 1000, 1, 10000,
                          "peak luminance that the source was mastered for"),
@@ -74,12 +80,14 @@ std::vector<ParameterSpec> with_limits(std::vector<ParameterSpec> own) {
                           [](const DisplayFacts& display) { return shortest(display.peak); }),
         number_parameter("source_black", "cd/m2", 0, 0, 10000,
                          "black level that the source was mastered for"),
-        number_parameter("target_black", "cd/m2", 0, 0, 10000, "black level of the display"),
+        number_parameter("target_black", "cd/m2", 0, 0, 10000,
+                         "black level of the display; it stays in the result and in SDR code "
+                         "values, from which libplacebo subtracts it"),
         number_parameter("reference_white", "cd/m2", 100, 1, 1000, "luminance of scene-linear 1"),
         sdr_or_hdr_parameter("sdr: 1 is target_peak; hdr: 1 is 100 cd/m2"),
     };
     all.insert(all.end(), own.begin(), own.end());
-    return with_apply("channels", fixed_parameters(std::move(all)));
+    return with_apply(std::move(default_apply), fixed_parameters(std::move(all)));
 }
 
 Operator eetf_operator() {
@@ -162,16 +170,18 @@ Operator bt2390() {
         "darker than scene operators";
     op.source = "Report ITU-R BT.2390, EETF; knee and black of libplacebo, tone_mapping.c: bt2390";
     op.license = "published formula; libplacebo: LGPL-2.1+, formula only, none of its code is used";
-    op.parameters = with_limits({
-        number_parameter("knee_offset", "", 0.5, 0.5, 2,
-                         "o of the knee (1 + o) mx - o: 0.5 in the Report, 1 in libplacebo"),
-        choice_parameter("black_lift", {"report", "libplacebo"}, "report",
-                         "black lift to target_black; report: adds mn (1 - E)^4; libplacebo: "
-                         "another power, and a gain that keeps the peak"),
-    });
+    op.parameters = with_limits(
+        "channels",
+        {
+            number_parameter("knee_offset", "", 0.5, 0.5, 2,
+                             "o of the knee (1 + o) mx - o: 0.5 in the Report, 1 in libplacebo"),
+            choice_parameter("black_lift", {"report", "libplacebo"}, "report",
+                             "black lift to target_black; report: adds mn (1 - E)^4; libplacebo: "
+                             "another power, and a gain that keeps the peak"),
+        });
     op.presets = {{"libplacebo",
-                   "libplacebo's variant",
-                   {{"knee_offset", "1"}, {"black_lift", "libplacebo"}}}};
+                   "libplacebo's variant, on luminance",
+                   {{"knee_offset", "1"}, {"black_lift", "libplacebo"}, {"apply", "luminance"}}}};
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);
         const Expr nits = named("nits", limits.is_compressed()
@@ -209,7 +219,7 @@ Operator bt2446a() {
         "contrast";
     op.source = "Report ITU-R BT.2446, method A, its tone mapping curve";
     op.license = "published formula";
-    op.parameters = with_limits({});
+    op.parameters = with_limits("channels", {});
     // 1.0770 Y and -1.1510 Y^2 + 2.7811 Y - 0.6302 differ at Y = 0.7399.
     op.differences = {{DocumentedDifference::Kind::jumps, 0.00104, ""}};
     // 0.001 display-linear, amplified by a matrix and by sRGB's slope at black.
@@ -266,12 +276,13 @@ Operator spline() {
         "adjustable contrast";
     op.source = "libplacebo, tone_mapping.c: spline, its default";
     op.license = "LGPL-2.1+; formula only, none of its code is used";
-    op.parameters = with_limits({
-        number_parameter("contrast", "", 0.5, 0, 1.5,
-                         "contrast about the pivot; 1 keeps its slope at 1"),
-        number_parameter("average", "cd/m2", 0, 0, 10000,
-                         "average luminance of the scene (0: unknown)"),
-    });
+    op.parameters = with_limits(
+        "luminance", {
+                         number_parameter("contrast", "", 0.5, 0, 1.5,
+                                          "contrast about the pivot; 1 keeps its slope at 1"),
+                         number_parameter("average", "cd/m2", 0, 0, 10000,
+                                          "average luminance of the scene (0: unknown)"),
+                     });
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);
         const Expr nits =

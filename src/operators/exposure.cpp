@@ -5,7 +5,9 @@
 //
 // Source    linear: common practice, "maximum division" where the divisor is the picture's maximum.
 //           exponential, logarithmic, exponentiation: as in T. Zeltner, "Tone Mapper"
-//           (github.com/tizian/tonemapper), 2015. log_tonemap: T. Madams, "Why Reinhard desaturates
+//           (github.com/tizian/tonemapper), 2015; the presets of exponential: Babylon.js,
+//           @babylonjs/core 9.35.0 (image processing and TonemapPostProcess), Orillusion 0.9.2,
+//           VTK 9.6.2. log_tonemap: T. Madams, "Why Reinhard desaturates
 //           my blacks", imdoingitwrong.wordpress.com, 2010-08-19, comment 9.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
 //           at 0.
@@ -80,6 +82,18 @@ Operator exponential() {
                                               "scene value shown at display-linear 1 - 1/e = 0.63"),
                              "mean luminance",
                              [](const SceneStatistics& s) { return s.mean_luminance; })});
+    // 1/(1.590579 ln 2) and 1/ln 2: Babylon.js raises 2 instead of e.
+    op.presets = {
+        {"channels",
+         "1 - exp(-x) of each channel: VTK, CEToneMapping of Orillusion",
+         {{"apply", "channels"}, {"average", "1"}}},
+        {"babylon",
+         "Standard tone mapping of Babylon.js, 1 - 2^(-1.590579 x)",
+         {{"apply", "channels"}, {"average", "0.9070250776"}}},
+        {"babylon_photographic",
+         "Photographic tone mapping of Babylon.js, 1 - 2^(-x)",
+         {{"apply", "channels"}, {"average", "1.442695041"}}},
+    };
     op.warnings = {kChannelsMayClip};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = 1 - exp(-(Expr::input() / p.expr("average")))}, p);

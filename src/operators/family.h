@@ -20,6 +20,13 @@ inline constexpr const char* kNegativesClampAtZero =
 /// Weights of relative luminance of ITU-R BT.2020-2, table 4.
 inline constexpr Vector3 kRec2020Weights = {0.2627, 0.6780, 0.0593};
 
+/// Weights of gray in the Tonemap classes of OpenCV 4.6.0, which take the first channel of a
+/// picture for red, although it is blue.
+inline constexpr Vector3 kOpencvWeights = {0.114, 0.587, 0.299};
+
+/// Weights of luminance in lygia 1.4.1.
+inline constexpr Vector3 kLygiaWeights = {0.21250175, 0.71537574, 0.07212251};
+
 /// Concatenates two chains.
 inline Pipeline operator+(Pipeline a, const Pipeline& b) {
     a.insert(a.end(), b.begin(), b.end());

@@ -8,7 +8,9 @@
 //           ToneMapping.hlsl. aldridge: G. Aldridge, "Approximating Film with Tonemapping",
 //           iwasbeingirony.blogspot.com, 2010-04-19, as in T. Zeltner, "Tone Mapper"
 //           (github.com/tizian/tonemapper). lottes: T. Lottes, "Advanced Techniques and
-//           Optimization of HDR Color Pipelines", GDC 2016. filament_generic: Filament,
+//           Optimization of HDR Color Pipelines", GDC 2016; presets: VTK 9.6.2, vtkToneMappingPass.
+//           hejl_burgess_dawson:babylon: Babylon.js, @babylonjs/core 9.35.0, TonemapPostProcess.
+//           filament_generic: Filament,
 //           ToneMapper.cpp, GenericToneMapper. ue3: Unreal Engine 3 documentation, "Color Grading",
 //           by way of R. Guy's shadertoy llXyWr. day: M. Day, "An efficient and user-friendly tone
 //           mapping operator", Insomniac Games, 2012. schlick: C. Schlick, "Quantization Techniques
@@ -17,8 +19,9 @@
 //           imdoingitwrong.wordpress.com, 2010-08-19.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
 //           at 0.
-// Out       CODE VALUES of a 2.2 power: hejl_burgess_dawson and aldridge [0, 1), ue3 [0, 1]. The
-//           others: display-linear RGB, 1.0 = display peak, and all may exceed it: hejl_2015
+// Out       CODE VALUES of a 2.2 power: hejl_burgess_dawson (without output=squared) and aldridge
+//           [0, 1), ue3 [0, 1]. The others: display-linear RGB, 1.0 = display peak, and all may
+//           exceed it: hejl_2015
 //           [-0.00072, 1.038), filament_generic up to its output scale, schlick up to p/(p-1), day
 //           up to the end of its shoulder, lottes and toe without an upper bound.
 // Kind      per channel; schlick luminance. Monotone on the neutral axis: yes, except that lottes
@@ -72,10 +75,20 @@ Operator hejl_burgess_dawson() {
     op.output = OutputKind::code_value;
     op.code_power = kBakedPower;
     op.dialects = "Hejl";
-    op.parameters = with_apply("channels");
+    op.parameters = with_apply(
+        "channels", {choice_parameter("output", {"code_values", "squared"}, "code_values",
+                                      "code_values: code values of a 2.2 power; squared: "
+                                      "display-linear, the square of the code values")});
+    op.presets = {{"babylon",
+                   "Hejl-Dawson tone mapping of Babylon.js, which squares the code values",
+                   {{"output", "squared"}}}};
     op.differences = {{DocumentedDifference::Kind::crushes_black, 0.004, ""}};
+    op.display = [](const Params& p) -> std::string {
+        return p.choice("output") == "squared" ? "linear" : "";
+    };
     op.build = [](const Params& p) -> Pipeline {
         const Expr f = hejl_rational(max(Expr::input() - 0.004, 0));
+        if (p.choice("output") == "squared") return tone_curve_pipeline({.f = f * f}, p);
         return tone_curve_pipeline({.f = f, .code_power = kBakedPower}, p);
     };
     return op;
@@ -196,8 +209,22 @@ Operator lottes() {
          number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid gray of the scene"),
          number_parameter("mid_out", "display-linear", 0.267, 0.01, 0.99,
                           "display-linear value of mid gray")});
+    op.presets = {{"vtk",
+                   "default of vtkToneMappingPass, GenericFilmic without ACES",
+                   {{"contrast", "1.6773"},
+                    {"shoulder", "0.9714"},
+                    {"hdr_max", "11.0785"},
+                    {"mid_out", "0.18"}}},
+                  {"vtk_uncharted2",
+                   "Uncharted 2 preset of vtkToneMappingPass",
+                   {{"contrast", "1.1759"},
+                    {"shoulder", "0.9746"},
+                    {"hdr_max", "6.3704"},
+                    {"mid_out", "0.18"}}}};
     op.warnings = {"with a shoulder above 1, highlights above some scene value get darker again"};
-    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.4, ""}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.4, ""},
+                      {DocumentedDifference::Kind::exceeds_white, 1.52, "vtk"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.41, "vtk_uncharted2"}};
     op.bounds = {.simd = 1e-5,
                  .reason =
                      "with a shoulder above 1 the curve may rise far above white and fall again, "

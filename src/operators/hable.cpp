@@ -6,7 +6,10 @@
 // Source    J. Hable, "Filmic Tonemapping Operators", filmicworlds.com, 2010-05-05, with the
 //           constants of that page (A .15 ... W 11.2, exposure bias 2): hable. J. Hable, "Uncharted
 //           2: HDR Lighting", GDC 2010 (A .22 B .30 E .01): hable_gdc; also in Godot's
-//           tonemap.glsl. J. Hable, "Filmic Tonemapping with Piecewise Power Curves",
+//           tonemap.glsl, and, times 1.25, in PlayCanvas 2.23.3 under the name TONEMAP_HEJL. Whites
+//           of other engines: postprocessing 6.39.6, ray-tracing-renderer 0.10.15, Mapbox GL JS
+//           3.32.0. unity_neutral: @galacean/engine-core 1.6.13, whose shader names Unity's curve.
+//           J. Hable, "Filmic Tonemapping with Piecewise Power Curves",
 //           filmicworlds.com, 2017-03-26, and github.com/johnhable/fw-public (CC0):
 //           hable_piecewise.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
@@ -18,7 +21,9 @@
 //           shoulder_strength, and the identity up to it with the defaults.
 // Differs   hable: nowhere. As on the page, the bias does not scale the white W: with the bias of
 //           2, scene-linear 5.6 is white. (Godot scales both, so its preset has white 2 for a scene
-//           white of 1; some ports apply the bias to the output.)
+//           white of 1; some ports apply the bias to the output.) unity_neutral: the engine
+//           rounds the factor 1/h(5.3) on the result to 1.31338, the difference is 6e-6. In
+//           postprocessing and ray-tracing-renderer a clamp to [0, 1] follows.
 //           hable_piecewise: a toe that ends below 2^-100 counts as no toe (the source takes the
 //           logarithm of 0). The slopes at the joints of the segments are limited to [2^-24, 2^24];
 //           the source has 0 and infinity for a joint at black with a gamma other than 1. A
@@ -45,13 +50,14 @@ struct Hable {
     }
 };
 
-Pipeline hable_pipeline(const Hable& h, const Params& p) {
+/// @param scene  the input of the curve, a function of input 0.
+Pipeline hable_pipeline(const Hable& h, const Expr& scene, const Params& p) {
     const Expr at_white = named("at_white", h(p.expr("white")));
     if (fails(less(0, at_white))) {
         throw Error("curve at white is " + shortest(at_white.value()) +
                     "; expected above 0 (toe_numerator below toe_denominator, larger white)");
     }
-    return tone_curve_pipeline({.f = h(p.expr("exposure_bias") * Expr::input()) / at_white}, p);
+    return tone_curve_pipeline({.f = h(scene) / at_white}, p);
 }
 
 ParameterSpec white() {
@@ -91,14 +97,38 @@ Operator uncharted() {
                     {"toe_numerator", "0.01"},
                     {"exposure_bias", "1"}}},
                   {"godot",
-                   "Godot's Filmic with its white at 1",
+                   "Godot's Filmic (Forward+, Mobile) with its white at 1; white is twice Godot's",
                    {{"shoulder_strength", "0.22"},
                     {"linear_strength", "0.3"},
                     {"toe_numerator", "0.01"},
-                    {"white", "2"}}}};
+                    {"white", "2"}}},
+                  {"no_bias",
+                   "without the bias: Filmic of PlayCanvas, tonemapUncharted2 of lygia",
+                   {{"exposure_bias", "1"}}},
+                  {"postprocessing",
+                   "UNCHARTED2 of postprocessing: white 4, no bias",
+                   {{"exposure_bias", "1"}, {"white", "4"}}},
+                  {"ray_tracing_renderer",
+                   "Uncharted 2 of ray-tracing-renderer: white 5, no bias",
+                   {{"exposure_bias", "1"}, {"white", "5"}}},
+                  {"mapbox",
+                   "sky of Mapbox GL JS: white 1000, no bias",
+                   {{"exposure_bias", "1"}, {"white", "1000"}}},
+                  {"unity_neutral",
+                   "Neutral of Galacean, after Unity's",
+                   {{"shoulder_strength", "0.2"},
+                    {"linear_strength", "0.29"},
+                    {"linear_angle", "0.24"},
+                    {"toe_strength", "0.272"},
+                    {"white", "5.3"},
+                    {"exposure_bias", "1.31338"}}}};
     op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.3, ""},
                       {DocumentedDifference::Kind::exceeds_white, 1.1, "gdc"},
-                      {DocumentedDifference::Kind::exceeds_white, 1.7, "godot"}};
+                      {DocumentedDifference::Kind::exceeds_white, 1.7, "godot"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.8, "postprocessing"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.65, "ray_tracing_renderer"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.01, "mapbox"},
+                      {DocumentedDifference::Kind::exceeds_white, 1.23, "unity_neutral"}};
     op.build = [](const Params& p) -> Pipeline {
         return hable_pipeline({.A = p.expr("shoulder_strength"),
                                .B = p.expr("linear_strength"),
@@ -106,7 +136,7 @@ Operator uncharted() {
                                .D = p.expr("toe_strength"),
                                .E = p.expr("toe_numerator"),
                                .F = p.expr("toe_denominator")},
-                              p);
+                              p.expr("exposure_bias") * Expr::input(), p);
     };
     return op;
 }
@@ -134,11 +164,22 @@ Operator gdc() {
     op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
-    op.parameters = with_apply("channels", {white(), exposure_bias(1)});
-    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""}};
+    op.parameters = with_apply(
+        "channels", {white(), exposure_bias(1),
+                     number_parameter("black", "scene-linear", 0, 0, 0.1,
+                                      "scene value, after the bias, that is subtracted first")});
+    // The curve is 0.8 at this white. PlayCanvas multiplies it by 1.25.
+    op.presets = {{"playcanvas",
+                   "PlayCanvas, TONEMAP_HEJL, which is not a curve of Hejl",
+                   {{"white", "6.2107773060570395"}, {"black", "0.004"}}}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""},
+                      {DocumentedDifference::Kind::exceeds_white, 1.21, "playcanvas"},
+                      {DocumentedDifference::Kind::crushes_black, 0.004, "playcanvas"}};
     op.build = [](const Params& p) -> Pipeline {
+        const Expr black = p.expr("black");
+        const Expr scene = p.expr("exposure_bias") * Expr::input();
         return hable_pipeline({.A = 0.22, .B = 0.30, .C = 0.10, .D = 0.20, .E = 0.01, .F = 0.30},
-                              p);
+                              black.is_constant(0) ? scene : max(scene - black, 0), p);
     };
     return op;
 }

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Khronos PBR Neutral: keeps the base colors of materials, compresses highlights and fades them to
-// white; and Filament's variant.
+// white; and the variants of Filament and Needle Engine.
 //
 // Source    Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024: KhronosGroup/ToneMapping,
 //           PBR_Neutral, pbrNeutral.glsl. Google Filament, ToneMapper.cpp, PBRNeutralToneMapper.
+//           Needle Engine, @needle-tools/engine 4.16.5, engine_tonemapping.ts: model-viewer's first
+//           commerce tone mapper (github.com/google/model-viewer/pull/4495).
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives clamped at
 //           0 (the toe's parabola would lower them further).
 // Out       display-linear RGB, 1.0 = display peak; range [0, 1).
-// Kind      3D, of the largest and the smallest channel: a hexcone stage. With x = min, p = max -
-//           offset(x), Ks = start_compression - 0.04 and d = 1 - Ks, the source subtracts the
-//           offset from every channel and returns c = p - (max - in) below Ks. Above it computes
-//           n = 1 - d^2/(p + d - Ks), scales c by n/p and mixes towards n with the weight
-//           g = 1 - 1/(desaturation (p - n) + 1):
+// Kind      khronos_neutral_needle: 3D, because its mix towards 1 depends on the sum of the
+//           channels. The others: 3D, of the largest and the smallest channel: a hexcone stage.
+//           With x = min, p = max - offset(x), Ks = start_compression - 0.04 and d = 1 - Ks, the
+//           source subtracts the offset from every channel and returns c = p - (max - in) below Ks.
+//           Above it computes n = 1 - d^2/(p + d - Ks), scales c by n/p and mixes towards n with
+//           the weight g = 1 - 1/(desaturation (p - n) + 1):
 //             n/p (p - (max - in)) (1 - g) + g n = n - (1 - g) n/p (max - in).
 //           So value(p) is p, then n; chroma(p) is 1, then (1 - g) n/p. Filament mixes towards 1:
 //           its value(p) is (1 - g) n + g. Both have a continuous slope at Ks. Monotone on the
@@ -109,8 +112,42 @@ Operator filament() {
     return op;
 }
 
+Operator needle() {
+    Operator op;
+    op.id = "khronos_neutral_needle";
+    op.title = "PBR Neutral (Needle Engine)";
+    op.view = "PBR Neutral Needle";
+    op.character =
+        "forerunner of Khronos PBR Neutral: no reflection is subtracted, bright colors fade to "
+        "white by the light of all channels";
+    op.source =
+        "Needle Engine, @needle-tools/engine 4.16.5, engine_tonemapping.ts: patchNeutral; after "
+        "model-viewer";
+    op.license = "formula and constants only; none of its code is used";
+    op.dialects = "PBR Neutral";
+    op.negatives = kNegativesClampAtZero;
+    op.build = [](const Params&) -> Pipeline {
+        constexpr double kStart = 0.8;
+        constexpr double kRange = 1 - kStart;
+        constexpr double kDesaturation = 0.5;
+        const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
+        const Expr largest = named("largest", max(max(c[0], c[1]), c[2]));
+        const Expr peak = named("peak", max(largest, kStart));
+        const Expr new_peak = named("new_peak", 1 - kRange * kRange / (peak + kRange - kStart));
+        const Expr extra = named("extra_brightness", (c[0] + c[1] + c[2]) * (1 - kStart / peak));
+        const Expr kept = named("kept", 3 / (kDesaturation * extra + 3));
+        CrossTalkStage stage{c};
+        for (Expr& channel : stage.f) {
+            channel = select(less(largest, kStart), channel,
+                             channel * (new_peak / peak) * kept + (1 - kept));
+        }
+        return {limit_to_positive(), stage};
+    };
+    return op;
+}
+
 }  // namespace
 
-std::vector<Operator> define_khronos_neutral() { return {khronos(), filament()}; }
+std::vector<Operator> define_khronos_neutral() { return {khronos(), filament(), needle()}; }
 
 TONEWRIGHT_NAMESPACE_END

@@ -7,9 +7,12 @@
 //           Digital Images", ACM Transactions on Graphics 21(3), SIGGRAPH 2002: equation 3
 //           (reinhard), equation 4 (reinhard_extended), equations 2 and 4 (nebula, with the
 //           constants of the Nebula engine's post on HDR). "Reinhard-Jodie": Jodie, shadertoy
-//           4dBcD1, 2017. reinhard_constant_luminance: 64, code/tonemapping of 64.github.io.
-//           E. Reinhard, K. Devlin, "Dynamic Range Reduction Inspired by Photoreceptor Physiology",
-//           IEEE Transactions on Visualization and Computer Graphics 11(1), 2005.
+//           4dBcD1, 2017. reinhard2: postprocessing 6.39.6, three-stdlib 2.36.1. Weights and
+//           presets of engines: @babylonjs/core 9.35.0 (TonemapPostProcess), lygia 1.4.1,
+//           @cesium/engine 26.3.0. reinhard_constant_luminance: 64, code/tonemapping
+//           of 64.github.io. E. Reinhard, K. Devlin, "Dynamic Range Reduction Inspired by
+//           Photoreceptor Physiology", IEEE Transactions on Visualization and Computer Graphics
+//           11(1), 2005. opencv_reinhard: OpenCV 4.6.0, photo, TonemapReinhard, executed.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
 //           at 0 (f has a pole at -1).
 // Out       display-linear RGB, 1.0 = display peak; reinhard and reinhard_devlin [0, 1),
@@ -25,7 +28,13 @@
 //           black, the limit.
 //           nebula: the post's code does not divide by the luminance, so its picture is quadratic
 //           near black and has no upper bound; copies of the code do the same. The post limits the
-//           average to [0.3, 1]. Neither applies here.
+//           average to [0.3, 1]. Neither applies here. reinhard2 is such a copy.
+//           reinhard:babylon: 0/0 is NaN at black in the engine, and its weights sum to 0.998.
+//           opencv_reinhard: OpenCV measures minimum and maximum twice, before and after the curve.
+//           The second pair is a parameter, because no statistic of the scene gives it. The key
+//           comes from relative luminance; OpenCV takes it from 0.114 R + 0.587 G + 0.299 B, at
+//           least 1e-4 of the maximum. Calling `process` twice on one object of OpenCV changes its
+//           intensity; here nothing does. OpenCV's gamma is the encoding of the display.
 //           reinhard_devlin: the adaptation is at least 2^-100; the paper has 0/0 where it is 0.
 //           The 3D part is a function of a power of the channels, so that 3D LUTs fit it better;
 //           the values are the same.
@@ -34,6 +43,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format_number.h"
 #include "operators/family.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -43,8 +53,20 @@ using Channels = std::array<Expr, 3>;
 
 Channels inputs() { return {Expr::input(0), Expr::input(1), Expr::input(2)}; }
 
-Expr luminance_of(const Channels& c) {
-    return kRec709Weights[0] * c[0] + kRec709Weights[1] * c[1] + kRec709Weights[2] * c[2];
+Expr luminance_of(const Channels& c, const Vector3& w = kRec709Weights) {
+    return w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
+}
+
+/// Parameter of the luminance's weights. Engines round or replace those of Rec.709.
+ParameterSpec weights_parameter(std::vector<std::string> choices) {
+    return choice_parameter("weights", std::move(choices), "rec709",
+                            "weights of the luminance: Rec.709, or those of an engine");
+}
+
+Vector3 weights_of(const Params& p) {
+    const std::string& weights = p.choice("weights");
+    if (weights == "babylon") return {0.22, 0.707, 0.071};
+    return weights == "lygia" ? kLygiaWeights : kRec709Weights;
 }
 
 Operator simple() {
@@ -59,16 +81,23 @@ Operator simple() {
     op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
-    op.parameters = with_apply("channels");
+    op.parameters = with_apply("channels", {weights_parameter({"rec709", "babylon", "lygia"})});
     op.presets = {{"luminance", "Reinhard on luminance", {{"apply", "luminance"}}},
-                  {"max", "Reinhard on the largest channel", {{"apply", "max"}}}};
+                  {"max", "Reinhard on the largest channel", {{"apply", "max"}}},
+                  {"babylon",
+                   "Reinhard of Babylon.js' TonemapPostProcess, on its own luminance",
+                   {{"apply", "luminance"}, {"weights", "babylon"}}},
+                  {"lygia",
+                   "tonemapReinhard of lygia, on its own luminance",
+                   {{"apply", "luminance"}, {"weights", "lygia"}}}};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.002, "babylon"}};
     op.warnings = {
         "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip"};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr f = x / (1 + x);
         const Expr inverse = named("inverse", x / (1 - x));
-        return tone_curve_pipeline({.f = f, .inverse = inverse}, p);
+        return tone_curve_pipeline({.f = f, .inverse = inverse, .weights = weights_of(p)}, p);
     };
     return op;
 }
@@ -89,7 +118,10 @@ Operator extended() {
         with_apply("channels", {number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
                                                  "lowest scene value shown as display white")});
     op.presets = {{"luminance", "Reinhard Extended on luminance", {{"apply", "luminance"}}},
-                  {"max", "Reinhard Extended on the largest channel", {{"apply", "max"}}}};
+                  {"max", "Reinhard Extended on the largest channel", {{"apply", "max"}}},
+                  {"cesium",
+                   "Cesium's Modified Reinhard with its default white, which changes nothing",
+                   {{"white", "1"}}}};
     op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
@@ -154,6 +186,48 @@ Operator nebula_as_printed() {
     return op;
 }
 
+Operator reinhard2() {
+    Operator op;
+    op.id = "reinhard2";
+    op.title = "Reinhard2 (postprocessing)";
+    op.view = "Reinhard2";
+    op.character =
+        "color times Reinhard Extended of its luminance, undivided: quadratic shadows, dark and "
+        "hard";
+    op.source =
+        "postprocessing 6.39.6, ToneMappingEffect: REINHARD2 and REINHARD2_ADAPTIVE; three-stdlib "
+        "2.36.1, ToneMapShader";
+    op.license = "Zlib, MIT; formula and constants only; none of their code is used";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Reinhard";
+    op.parameters = {
+        number_parameter("middle_grey", "", 0.6, 0.01, 1, "scaled luminance of the average"),
+        number_parameter("white", "scene-linear, after the scale", 4, 0.01, kHalfMax,
+                         "scaled luminance at which the factor on the color is 1"),
+        number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
+                         "mean luminance of the picture; REINHARD2 of the engine takes 1"),
+        choice_parameter("clamp", {"yes", "no"}, "yes", "limit the result to [0, 1]")};
+    op.presets = {{"three_stdlib",
+                   "ToneMapShader of three-stdlib: white 16, not limited to 1",
+                   {{"white", "16"}, {"clamp", "no"}}}};
+    op.warnings = {
+        "quadratic near black, because the engine does not divide by the luminance; "
+        "reinhard_extended:luminance does"};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, kInfinity, "three_stdlib"}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr luminance = Expr::input();
+        const Expr white = p.expr("white");
+        const Expr scaled =
+            named("scaled", luminance * (p.expr("middle_grey") / p.expr("average")));
+        const Expr factor = named("factor", scaled * (1 + scaled / (white * white)) / (1 + scaled));
+        Pipeline stages = {limit_to_positive(), ToneScaleStage{ToneScaleStage::Norm::luminance,
+                                                               kRec709Weights, luminance * factor}};
+        if (p.choice("clamp") == "yes") stages.emplace_back(ClampStage{0, 1});
+        return stages;
+    };
+    return op;
+}
+
 Operator jodie() {
     Operator op;
     op.id = "reinhard_jodie";
@@ -166,9 +240,11 @@ Operator jodie() {
     op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
-    op.build = [](const Params&) -> Pipeline {
+    op.parameters = {weights_parameter({"rec709", "lygia"})};
+    op.presets = {{"lygia", "tonemapReinhardJodie of lygia", {{"weights", "lygia"}}}};
+    op.build = [](const Params& p) -> Pipeline {
         const Channels c = inputs();
-        const Expr luminance = named("luminance", luminance_of(c));
+        const Expr luminance = named("luminance", luminance_of(c, weights_of(p)));
         const auto channel = [&](const Expr& v) {
             const Expr t = named("t", v / (1 + v));
             return mix(named("by_luminance", v / (1 + luminance)), t, t);
@@ -224,6 +300,56 @@ double devlin_contrast(const SceneStatistics& s) {
     return 0.3 + 0.7 * std::pow(std::clamp(k, 0.0, 1.0), 1.4);
 }
 
+/// Response C/(C + (factor A)^contrast), with the adaptation A of pixel and picture.
+struct Receptors {
+    Expr factor, contrast, chromatic, light;
+    Channels means;
+    Expr mean_luminance;
+    Vector3 weights = kRec709Weights;
+
+    /// Adaptation of channel i to the picture.
+    [[nodiscard]] Expr global(std::size_t i) const {
+        return named("global_light", chromatic * means[i] + (1 - chromatic) * mean_luminance);
+    }
+
+    [[nodiscard]] Pipeline stages() const {
+        // For grays the formula is x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black is infinite.
+        // This power takes the infinite slope out of the 3D LUT.
+        const Expr steepness = named("steepness", max(1 - contrast, 0.25));
+        Channels in = inputs();
+        for (Expr& channel : in)
+            channel = named("scene", pow(channel, 1 / steepness));
+        const Expr L = named("L", luminance_of(in, weights));
+        Channels out = in;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Expr local = named("local_light", chromatic * in[i] + (1 - chromatic) * L);
+            const Expr adaptation = named("adaptation", light * local + (1 - light) * global(i));
+            out[i] = in[i] / (in[i] + pow(max(factor * adaptation, 0x1p-100), contrast));
+        }
+        return {curve_stage(pow(Expr::input(), steepness)), clamp_stage(pow(kHalfMax, steepness)),
+                CrossTalkStage{out}};
+    }
+
+    /// The same without adaptation to the pixel.
+    [[nodiscard]] Stage curve() const {
+        CurveStage stage = curve_stage(0);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Expr x = Expr::input();
+            stage.f[i] = x / (x + pow(max(factor * global(i), 0x1p-100), contrast));
+        }
+        return stage;
+    }
+
+    /// Largest channel of the response to (1, 1, 1).
+    [[nodiscard]] Expr white() const {
+        const auto response = [&](std::size_t i) {
+            return 1 /
+                   (1 + pow(max(factor * (light + (1 - light) * global(i)), 0x1p-100), contrast));
+        };
+        return max(max(response(0), response(1)), response(2));
+    }
+};
+
 Operator devlin() {
     Operator op;
     op.id = "reinhard_devlin";
@@ -271,28 +397,104 @@ Operator devlin() {
     op.bounds.reason =
         "infinite slope at black, and half floats end at 6e-8; elsewhere the error of a 3D LUT";
     op.build = [](const Params& p) -> Pipeline {
-        const Expr m = p.expr("contrast");
-        // For grays the formula is x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black is infinite.
-        // This power takes the infinite slope out of the 3D LUT.
-        const Expr steepness = named("steepness", max(1 - m, 0.25));
-        Channels in = inputs();
-        for (Expr& channel : in)
-            channel = named("scene", pow(channel, 1 / steepness));
-        const Expr L = named("L", luminance_of(in));
-        const Channels means = {p.expr("mean_red"), p.expr("mean_green"), p.expr("mean_blue")};
-        const Expr mean_luminance = p.expr("mean_luminance");
-        const Expr c = p.expr("chromatic_adaptation");
-        const Expr a = p.expr("light_adaptation");
-        const Expr f = exp(-p.expr("intensity"));
-        Channels out = in;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Expr local = named("local_light", c * in[i] + (1 - c) * L);
-            const Expr global = named("global_light", c * means[i] + (1 - c) * mean_luminance);
-            const Expr adaptation = named("adaptation", a * local + (1 - a) * global);
-            out[i] = in[i] / (in[i] + pow(max(f * adaptation, 0x1p-100), m));
+        const Receptors receptors{
+            .factor = exp(-p.expr("intensity")),
+            .contrast = p.expr("contrast"),
+            .chromatic = p.expr("chromatic_adaptation"),
+            .light = p.expr("light_adaptation"),
+            .means = {p.expr("mean_red"), p.expr("mean_green"), p.expr("mean_blue")},
+            .mean_luminance = p.expr("mean_luminance")};
+        return Pipeline{limit_to_positive()} + receptors.stages();
+    };
+    return op;
+}
+
+Operator opencv() {
+    Operator op;
+    op.id = "opencv_reinhard";
+    op.title = "Reinhard-Devlin (OpenCV)";
+    op.view = "OpenCV Reinhard";
+    op.character =
+        "Reinhard-Devlin between two stretches to the range of the picture: its minimum becomes "
+        "black, its maximum white";
+    op.source = "OpenCV 4.6.0, photo, TonemapReinhard; after Reinhard and Devlin 2005";
+    op.license = "Apache-2.0; formula and constants only; none of its code is used";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Reinhard";
+    const auto of_picture = [](std::string name, double value, std::string statistic,
+                               std::string help, double (*from_picture)(const SceneStatistics&)) {
+        return statistic_parameter(
+            number_parameter(std::move(name), "scene-linear", value, 0, kHalfMax, std::move(help)),
+            std::move(statistic), from_picture);
+    };
+    const std::string mean_help = "mean of the picture; only with light_adaptation below 1";
+    op.parameters = {
+        number_parameter("intensity", "", 0, -8, 8,
+                         "f: brightness; scales the adaptation by exp(-f)"),
+        number_parameter("light_adaptation", "", 1, 0, 1,
+                         "0 adapts to the means of the picture, 1 to the pixel"),
+        number_parameter("color_adaptation", "", 0, 0, 1,
+                         "0 adapts all channels to the gray, 1 adapts each channel to itself"),
+        number_parameter("minimum", "scene-linear", 0, 0, kHalfMax,
+                         "smallest channel of the picture, shown as black"),
+        of_picture("maximum", 1, "largest channel", "largest channel of the picture",
+                   [](const SceneStatistics& s) {
+                       return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
+                   }),
+        statistic_parameter(
+            number_parameter("contrast", "", 0.6, 0.3, 1,
+                             "m: power of the adaptation; larger has more contrast"),
+            "0.3 + 0.7 k^1.4 of the key k", devlin_contrast),
+        of_picture("mean_red", 0.5, "mean red", mean_help,
+                   [](const SceneStatistics& s) { return s.mean_rgb[0]; }),
+        of_picture("mean_green", 0.5, "mean green", mean_help,
+                   [](const SceneStatistics& s) { return s.mean_rgb[1]; }),
+        of_picture("mean_blue", 0.5, "mean blue", mean_help,
+                   [](const SceneStatistics& s) { return s.mean_rgb[2]; }),
+        of_picture("mean_gray", 0.5, "mean of 0.114 R + 0.587 G + 0.299 B", mean_help,
+                   [](const SceneStatistics& s) {
+                       return kOpencvWeights[0] * s.mean_rgb[0] +
+                              kOpencvWeights[1] * s.mean_rgb[1] + kOpencvWeights[2] * s.mean_rgb[2];
+                   }),
+        number_parameter("output_minimum", "", 0, 0, 1,
+                         "smallest channel of the result before it is stretched"),
+        number_parameter("output_maximum", "", 0, 0, 1,
+                         "largest channel of the result before it is stretched (0: that of a pixel "
+                         "whose channels are all the maximum)")};
+    op.parameters = fixed_parameters(std::move(op.parameters));
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.98, ""}};
+    op.bounds.lut3d = 0.05;
+    op.bounds.reason =
+        "infinite slope at black, and half floats end at 6e-8; elsewhere the error of a 3D LUT";
+    op.build = [](const Params& p) -> Pipeline {
+        const double minimum = p.number("minimum");
+        const double span = p.number("maximum") - minimum;
+        if (!(span > 0)) {
+            throw Error("maximum is " + shortest(p.number("maximum")) +
+                        "; expected above minimum, " + shortest(minimum));
         }
-        return {limit_to_positive(), curve_stage(pow(Expr::input(), steepness)),
-                clamp_stage(pow(kHalfMax, steepness)), CrossTalkStage{out}};
+        const auto normalized = [&](const char* name) { return (p.number(name) - minimum) / span; };
+        const Receptors receptors{
+            .factor = std::exp(-p.number("intensity")),
+            .contrast = p.number("contrast"),
+            .chromatic = p.number("color_adaptation"),
+            .light = p.number("light_adaptation"),
+            .means = {normalized("mean_red"), normalized("mean_green"), normalized("mean_blue")},
+            .mean_luminance = normalized("mean_gray"),
+            .weights = kOpencvWeights};
+        const Expr x = Expr::input();
+        const double white = receptors.white().value();
+        const double high = p.number("output_maximum") > 0 ? p.number("output_maximum") : white;
+        const double low = p.number("output_minimum");
+        if (!(low < high)) {
+            throw Error("output_minimum is " + shortest(low) + "; expected below output_maximum, " +
+                        shortest(high));
+        }
+        const Pipeline response =
+            p.number("light_adaptation") == 0 ? Pipeline{receptors.curve()} : receptors.stages();
+        return Pipeline{limit_to_positive(), curve_stage((x - minimum) / span),
+                        ClampStage{0, kHalfMax}} +
+               response + Pipeline{curve_stage((x - low) / (high - low))};
     };
     return op;
 }
@@ -300,8 +502,15 @@ Operator devlin() {
 }  // namespace
 
 std::vector<Operator> define_reinhard() {
-    return {simple(), extended(),           nebula(), nebula_as_printed(),
-            jodie(),  constant_luminance(), devlin()};
+    return {simple(),
+            extended(),
+            nebula(),
+            nebula_as_printed(),
+            reinhard2(),
+            jodie(),
+            constant_luminance(),
+            devlin(),
+            opencv()};
 }
 
 TONEWRIGHT_NAMESPACE_END

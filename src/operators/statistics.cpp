@@ -5,6 +5,8 @@
 //
 // Source    drago: F. Drago, K. Myszkowski, T. Annen, N. Chiba, "Adaptive Logarithmic Mapping for
 //           Displaying High Contrast Scenes", Computer Graphics Forum 22(3), Eurographics 2003.
+//           drago:pfstmo: pfstmo 2.2.0, pfstmo_drago03. opencv_drago: OpenCV 4.6.0, photo,
+//           TonemapDrago. Both were executed.
 //           ward: G. Ward, "A Contrast-Based Scalefactor for Luminance Display", Graphics Gems IV,
 //           1994, pp. 415-421. tumblin_rushmeier: J. Tumblin, H. Rushmeier, "Tone Reproduction for
 //           Realistic Images", IEEE Computer Graphics and Applications 13(6), 1993, pp. 42-48.
@@ -25,10 +27,14 @@
 //           drago: the display's encoding replaces the paper's changed gamma. ln(1 + x) keeps its
 //           digits for small x, and the bias power ends at 2^-100 of the maximum, because its slope
 //           is infinite at 0.
-//           tumblin_rushmeier: luminance and max variants show negative output as black.
-//           ferwerda, durand_dorsey_rods: the rods' signal -0.702 X + 1.039 Y + 0.433 Z is negative
-//           for saturated reds; here it is 0 there. k is limited to [0, 1] before it is squared (T.
-//           Zeltner's "Tone Mapper" squares first, so bright scenes get night vision).
+//           opencv_drago: OpenCV measures minimum and maximum twice, before and after the curve.
+//           The second pair is a parameter, because no statistic of the scene gives it. Its
+//           statistics of gray have the weights 0.114, 0.587, 0.299 and values of at least 1e-4 of
+//           the maximum; `apply` fills in those of relative luminance. tumblin_rushmeier: luminance
+//           and max variants show negative output as black. ferwerda, durand_dorsey_rods: the rods'
+//           signal -0.702 X + 1.039 Y + 0.433 Z is negative for saturated reds; here it is 0 there.
+//           k is limited to [0, 1] before it is squared (T. Zeltner's "Tone Mapper" squares first,
+//           so bright scenes get night vision).
 // Check     mid gray 0.18 -> 0.0616409117 (drago), 0.0302864674 (ward), 0.0424389891
 //           (tumblin_rushmeier); (0.05, 0.1, 2) -> (0.0241295151, 0.0273945785, 0.151466987)
 //           (ferwerda, rod_weight 0.5), (0.0251727377, 0.0267686450, 0.157100389)
@@ -36,6 +42,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format_number.h"
 #include "operators/family.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -71,11 +78,14 @@ Operator drago() {
         "High Contrast Scenes, Computer Graphics Forum 22(3), Eurographics 2003, eq. 4";
     op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
+    op.dialects = "Drago";
     op.parameters = with_apply(
         "luminance",
         {number_parameter("bias", "", 0.85, 0.5, 1,
                           "b: smaller is brighter and flatter; also scales the log average, by "
                           "(1 + b - 0.85)^-5"),
+         choice_parameter("bias_scales_average", {"yes", "no"}, "yes",
+                          "yes: as in the paper; no: as in pfstmo"),
          number_parameter("display_max", "cd/m2", 100, 1, 10000,
                           "luminance at which the maximum is shown; display white is 100"),
          log_average(1),
@@ -83,13 +93,18 @@ Operator drago() {
                                               "highest scene luminance"),
                              "maximum luminance",
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
+    op.presets = {{"pfstmo",
+                   "pfstmo_drago03, whose bias does not scale the average",
+                   {{"bias_scales_average", "no"}}}};
     op.warnings = {kChannelsMayClip};
     op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.5, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr bias = p.expr("bias");
         const Expr maximum = p.expr("maximum");
-        const Expr adaptation =
-            named("adaptation", p.expr("log_average") / pow(1 + bias - 0.85, 5));
+        const Expr average = p.expr("log_average");
+        const Expr adaptation = p.choice("bias_scales_average") == "yes"
+                                    ? named("adaptation", average / pow(1 + bias - 0.85, 5))
+                                    : average;
         const Expr at_maximum =
             named("at_maximum", log_of_1_plus(maximum / adaptation) / std::log(10.0));
         const Expr exponent = named("exponent", log(bias) / std::log(0.5));
@@ -98,6 +113,72 @@ Operator drago() {
         const Expr f = (p.expr("display_max") / 100 / at_maximum) *
                        (log_of_1_plus(L / adaptation) / log(base));
         return tone_curve_pipeline({.f = f}, p);
+    };
+    return op;
+}
+
+Operator opencv_drago() {
+    Operator op;
+    op.id = "opencv_drago";
+    op.title = "Drago (OpenCV)";
+    op.view = "OpenCV Drago";
+    op.character =
+        "Drago between two stretches to the range of the picture: its minimum becomes black, its "
+        "maximum white";
+    op.source = "OpenCV 4.6.0, photo, TonemapDrago; after Drago, Myszkowski, Annen, Chiba 2003";
+    op.license = "Apache-2.0; formula and constants only; none of its code is used";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Drago";
+    op.parameters = with_apply(
+        "luminance",
+        fixed_parameters(
+            {number_parameter("bias", "", 0.85, 0.5, 1, "b: smaller is brighter and flatter"),
+             number_parameter("minimum", "scene-linear", 0, 0, kHalfMax,
+                              "smallest channel of the picture, shown as black"),
+             statistic_parameter(
+                 number_parameter("maximum", "scene-linear", 1, 1e-6, kHalfMax,
+                                  "largest channel of the picture"),
+                 "largest channel",
+                 [](const SceneStatistics& s) {
+                     return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
+                 }),
+             log_average(0.5),
+             statistic_parameter(
+                 number_parameter("maximum_gray", "scene-linear", 1, 1e-6, kHalfMax,
+                                  "largest 0.114 R + 0.587 G + 0.299 B of the picture"),
+                 "maximum luminance", [](const SceneStatistics& s) { return s.maximum_luminance; }),
+             number_parameter("output_minimum", "", 0, 0, 100,
+                              "smallest channel of the result before it is stretched"),
+             number_parameter("output_maximum", "", 0, 0, kHalfMax,
+                              "largest channel of the result before it is stretched (0: that of "
+                              "the largest gray)")}));
+    op.warnings = {kChannelsMayClip};
+    op.differences = {{DocumentedDifference::Kind::exceeds_white, 5.3, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double minimum = p.number("minimum");
+        const double span = p.number("maximum") - minimum;
+        const double average = (p.number("log_average") - minimum) / span;
+        const double largest = (p.number("maximum_gray") - minimum) / span;
+        if (!(span > 0 && average > 0 && largest > 0)) {
+            throw Error("minimum is " + shortest(minimum) +
+                        "; expected below maximum, log_average and maximum_gray");
+        }
+        const double exponent = std::log(p.number("bias")) / std::log(0.5);
+        const double low = p.number("output_minimum");
+        const double high = p.number("output_maximum") > 0
+                                ? p.number("output_maximum")
+                                : std::log1p(largest / average) / std::log(10.0);
+        if (!(low < high)) {
+            throw Error("output_minimum is " + shortest(low) + "; expected below output_maximum, " +
+                        shortest(high));
+        }
+        const Expr x = Expr::input();
+        const Expr base = named("base", 2 + 8 * pow(max(x / largest, 0x1p-100), exponent));
+        const ToneCurve curve{.f = log_of_1_plus(x / average) / log(base),
+                              .weights = kOpencvWeights};
+        return Pipeline{limit_to_positive(), curve_stage((x - minimum) / span),
+                        ClampStage{0, kHalfMax}} +
+               apply_tone_curve(curve, p) + Pipeline{curve_stage((x - low) / (high - low))};
     };
     return op;
 }
@@ -326,7 +407,7 @@ Operator durand_dorsey_rods() {
 }  // namespace
 
 std::vector<Operator> define_statistics() {
-    return {drago(), ward(), tumblin_rushmeier(), ferwerda(), durand_dorsey_rods()};
+    return {drago(), opencv_drago(), ward(), tumblin_rushmeier(), ferwerda(), durand_dorsey_rods()};
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -32,6 +32,7 @@ std::string to_string(const DocumentedDifference& d) {
                                          : "exceeds white, up to " + rounded(d.value, 3)) +
                    "; SDR displays clip it";
         case Kind::not_monotone:
+            if (d.value == 0) return prefix + "monotone";
             return prefix + "non-monotone" +
                    (d.value == kInfinity ? "" : " below " + rounded(d.value, 2));
         case Kind::tints_gray:

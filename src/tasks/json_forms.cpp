@@ -76,11 +76,10 @@ Json hdr_preset(const Operator& op) {
 }  // namespace
 
 std::string output_of(const Operator& op) {
-    if (op.display) {
-        const std::string display = resolve(op, nullptr, {}, "").output_display();
-        return display.empty() ? "display-linear" : "code values of " + find_display(display).title;
-    }
-    if (op.output == OutputKind::display_linear) return "display-linear";
+    const ResolvedOperator usual = resolve(op, nullptr, {}, "");
+    if (usual.output() == OutputKind::display_linear) return "display-linear";
+    if (const std::string display = usual.output_display(); !display.empty())
+        return "code values of " + find_display(display).title;
     return fmt::format("code values, power {}", op.code_power);
 }
 

@@ -66,9 +66,9 @@ std::unique_ptr<CommandLine> make_command_line() {
         "  tonewright config -o ocio_config\n"
         "`tonewright COMMAND --help` explains a command. Exit codes: " +
         exit_codes() + ".");
-    for (const auto add :
-         {add_apply, add_compare, add_info, add_meter, add_sheet, add_chart, add_bake, add_shader,
-          add_config, add_list, add_import, add_eval, add_plot, add_check, add_verify, add_report})
+    for (const auto add : {add_apply, add_compare, add_info, add_meter, add_sheet, add_chart,
+                           add_bake, add_shader, add_conformance, add_config, add_list, add_import,
+                           add_eval, add_plot, add_check, add_verify, add_report})
         add(*program);
     return program;
 }

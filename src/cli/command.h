@@ -85,6 +85,7 @@ void add_info(CommandLine& program);
 void add_meter(CommandLine& program);
 void add_bake(CommandLine& program);
 void add_shader(CommandLine& program);
+void add_conformance(CommandLine& program);
 void add_config(CommandLine& program);
 void add_verify(CommandLine& program);
 void add_check(CommandLine& program);

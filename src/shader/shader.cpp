@@ -17,6 +17,7 @@
 #include "base/strings.h"
 #include "expr/nodes.h"
 #include "measure/sample_set.h"
+#include "pipeline/settings_text.h"
 #include "shader/first_order.h"
 #include "shader/fitted_curves.h"
 #include "shader/float_run.h"
@@ -312,21 +313,6 @@ std::string definition_hash(const Pipeline& pipeline) {
         number.emplace(e.node(), number.size());
     }
     return content_hash(text);
-}
-
-std::string settings_text(const ResolvedOperator& op, const std::vector<std::string>& uniforms) {
-    std::string text;
-    for (const ParameterSpec& spec : op.op->parameters) {
-        if (std::find(uniforms.begin(), uniforms.end(), spec.name) != uniforms.end()) continue;
-        const std::string value =
-            spec.kind == ParameterSpec::Kind::number   ? shortest(op.params.number(spec.name))
-            : spec.kind == ParameterSpec::Kind::choice ? op.params.choice(spec.name)
-                                                       : op.params.text(spec.name);
-        if (!value.empty()) text += (text.empty() ? "" : ", ") + spec.name + " " + value;
-    }
-    if (!op.params.look().empty())
-        text += (text.empty() ? "" : ", ") + ("look " + op.params.look());
-    return text;
 }
 
 std::string output_text(const ShaderRequest& request) {

@@ -25,9 +25,9 @@ struct Variable {
 };
 
 const std::vector<Variable>& variables() {
-    static const std::vector<std::string> with_luts = {"apply",  "compare", "bake",  "shader",
-                                                       "config", "list",    "eval",  "plot",
-                                                       "check",  "verify",  "report"};
+    static const std::vector<std::string> with_luts = {
+        "apply", "compare", "bake", "shader", "conformance", "config",
+        "list",  "eval",    "plot", "check",  "verify",      "report"};
     static const std::vector<std::string> with_fits = {"bake", "shader", "config",
                                                        "eval", "verify", "report"};
     static const std::vector<Variable> all = {

@@ -10,8 +10,9 @@ import numpy as np
 from pictures import ALL as IS_FULL
 from pictures import skip
 
-# npm packages: Dawn for Node, a translator of SPIR-V, three.js, what drives a browser, and tone mappers in GLSL.
-PACKAGES = ["webgpu@0.6.2", "naga-wasm@30.1.0", "three@0.187.0", "playwright-core@1.65.1", "glsl-tone-map@2.2.0"]
+# npm packages: Dawn for Node, a translator of SPIR-V, three.js, what drives a browser, and tone mappers in GLSL and JavaScript.
+PACKAGES = ["webgpu@0.6.2", "naga-wasm@30.1.0", "three@0.187.0", "playwright-core@1.65.1", "glsl-tone-map@2.2.0",
+            "hdrify@1.2.1"]
 
 
 def npm_modules(tonewright: str, name: str = "npm-shaders", packages: list = PACKAGES) -> pathlib.Path:

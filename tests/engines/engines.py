@@ -335,8 +335,8 @@ def ray_tracing_renderer(package):
 def needle(package, three_package):
     """The engine patches the shader chunk of its three.js; its own code does so here."""
     patch = re.sub(r"^(?:import|export) .*? from .*$|^export ", "", read(package / "lib/engine/engine_tonemapping.js"), flags=re.M)
-    chunk = template(read(three_package / CHUNKS / "tonemapping_pars_fragment.glsl.js"))
-    script = f"const ShaderChunk = {{tonemapping_pars_fragment: {json.dumps(chunk)}}}; const isDevEnvironment = () => true;\n"
+    module = (three_package / "build/three.module.js").resolve().as_uri()
+    script = f"import {{ ShaderChunk as chunks }} from '{module}';\nconst ShaderChunk = {{ ...chunks }};\nconst isDevEnvironment = () => true;\n"
     patched = node(script + patch + "\nconsole.log(ShaderChunk.tonemapping_pars_fragment);")
     return named(library(patched, EXPOSURE), {"AgXToneMapping": "AgXToneMapping(c)", "NeutralToneMapping": "NeutralToneMapping(c)"})
 

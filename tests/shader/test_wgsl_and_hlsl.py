@@ -42,7 +42,7 @@ MAIN = {
 
 def textures_of(text_file: pathlib.Path) -> list:
     """Those of the text's comments, and for WGSL how they say that the file is loaded."""
-    found = re.findall(r"^// (\w+): (\d+) x (\d+) x (\d+) texels.*\n((?://.*\n)*)", text_file.read_text(), re.MULTILINE)
+    found = re.findall(r"^// (\w+): (\d+) x (\d+) x (\d+) texels.*\n(?:// To load its file:\n)?((?://.*\n)*)", text_file.read_text(), re.MULTILINE)
     return [{"file": str(text_file.parent / f"{name}.rgba32f"), "size": [int(n) for n in size],
              "loader": lines.replace("// ", "") if text_file.suffix == ".wgsl" else ""} for name, *size, lines in found]
 

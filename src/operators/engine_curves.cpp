@@ -89,19 +89,19 @@ Operator luma_gl() {
     op.license = "MIT; formula and constants only; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "ACES";
-    op.parameters = {display_parameter(
+    op.parameters = fixed_parameters({display_parameter(
         number_parameter("maximum_luminance", "display-linear", 1, 1, 100,
                          "display peak divided by paper white"),
-        [](const DisplayFacts& display) { return shortest(display.peak / 100); })};
+        [](const DisplayFacts& display) { return shortest(display.peak / 100); })});
     op.peak = [](const Params& params) { return params.number("maximum_luminance"); };
     op.presets = {{"hdr", "an HDR canvas of four times white", {{"maximum_luminance", "4"}}}};
     op.differences = {{DocumentedDifference::Kind::exceeds_white, 4, "hdr"}};
     op.build = [](const Params& p) -> Pipeline {
-        const Expr peak = p.expr("maximum_luminance");
+        const double peak = p.number("maximum_luminance");
         const auto narkowicz = [](const Expr& x) {
             return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
         };
-        if (peak.is_constant(1))
+        if (peak == 1)
             return {limit_to_positive(), curve_stage(narkowicz(Expr::input())), ClampStage{0, 1}};
         const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
         const Expr largest = named("largest", max(max(c[0], c[1]), c[2]));
@@ -110,7 +110,7 @@ Operator luma_gl() {
         CrossTalkStage stage{c};
         for (Expr& channel : stage.f)
             channel = narkowicz(channel) * scale;
-        return {limit_to_positive(), stage, clamp_stage(peak)};
+        return {limit_to_positive(), stage, ClampStage{0, peak}};
     };
     return op;
 }

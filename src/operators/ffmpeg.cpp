@@ -154,7 +154,10 @@ Operator ffmpeg() {
                       {DocumentedDifference::Kind::exceeds_white, 1.1, "mobius"}};
     op.build = [](const Params& p) -> Pipeline {
         Pipeline stages = {limit_to_positive()};
-        if (p.number("desat") > 0) stages.emplace_back(desaturation(p.number("desat")));
+        if (p.number("desat") > 0) {
+            stages.emplace_back(desaturation(p.number("desat")));
+            stages.emplace_back(limit_to_positive());  // no effect: a mix of channels from 0 up
+        }
         if (p.choice("tonemap") != "none")
             stages.emplace_back(ToneScaleStage{ToneScaleStage::Norm::max_rgb, {}, curve_of(p)});
         return stages;

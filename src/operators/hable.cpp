@@ -179,7 +179,7 @@ Operator gdc() {
         const Expr black = p.expr("black");
         const Expr scene = p.expr("exposure_bias") * Expr::input();
         return hable_pipeline({.A = 0.22, .B = 0.30, .C = 0.10, .D = 0.20, .E = 0.01, .F = 0.30},
-                              black.is_constant(0) ? scene : max(scene - black, 0), p);
+                              select(equal(black, 0), scene, max(scene - black, 0)), p);
     };
     return op;
 }

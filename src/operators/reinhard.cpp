@@ -431,16 +431,20 @@ Operator opencv() {
     op.parameters = {
         number_parameter("intensity", "", 0, -8, 8,
                          "f: brightness; scales the adaptation by exp(-f)"),
-        number_parameter("light_adaptation", "", 1, 0, 1,
-                         "0 adapts to the means of the picture, 1 to the pixel"),
+        fixed_parameters(
+            {number_parameter("light_adaptation", "", 1, 0, 1,
+                              "0 adapts to the means of the picture, 1 to the pixel")})[0],
         number_parameter("color_adaptation", "", 0, 0, 1,
                          "0 adapts all channels to the gray, 1 adapts each channel to itself"),
         number_parameter("minimum", "scene-linear", 0, 0, kHalfMax,
                          "smallest channel of the picture, shown as black"),
-        of_picture("maximum", 1, "largest channel", "largest channel of the picture",
-                   [](const SceneStatistics& s) {
-                       return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
-                   }),
+        statistic_parameter(
+            number_parameter("maximum", "scene-linear", 1, 1e-6, kHalfMax,
+                             "largest channel of the picture"),
+            "largest channel",
+            [](const SceneStatistics& s) {
+                return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
+            }),
         statistic_parameter(
             number_parameter("contrast", "", 0.6, 0.3, 1,
                              "m: power of the adaptation; larger has more contrast"),
@@ -461,35 +465,34 @@ Operator opencv() {
         number_parameter("output_maximum", "", 0, 0, 1,
                          "largest channel of the result before it is stretched (0: that of a pixel "
                          "whose channels are all the maximum)")};
-    op.parameters = fixed_parameters(std::move(op.parameters));
     op.differences = {{DocumentedDifference::Kind::exceeds_white, 1.98, ""}};
     op.bounds.lut3d = 0.05;
     op.bounds.reason =
         "infinite slope at black, and half floats end at 6e-8; elsewhere the error of a 3D LUT";
     op.build = [](const Params& p) -> Pipeline {
-        const double minimum = p.number("minimum");
-        const double span = p.number("maximum") - minimum;
-        if (!(span > 0)) {
-            throw Error("maximum is " + shortest(p.number("maximum")) +
-                        "; expected above minimum, " + shortest(minimum));
+        const Expr minimum = p.expr("minimum");
+        const Expr span = named("span", p.expr("maximum") - minimum);
+        if (fails(less(0, span))) {
+            throw Error("maximum is " + shortest(p.expr("maximum").value()) +
+                        "; expected above minimum, " + shortest(minimum.value()));
         }
-        const auto normalized = [&](const char* name) { return (p.number(name) - minimum) / span; };
+        const auto normalized = [&](const char* name) { return (p.expr(name) - minimum) / span; };
         const Receptors receptors{
-            .factor = std::exp(-p.number("intensity")),
-            .contrast = p.number("contrast"),
-            .chromatic = p.number("color_adaptation"),
+            .factor = exp(-p.expr("intensity")),
+            .contrast = p.expr("contrast"),
+            .chromatic = p.expr("color_adaptation"),
             .light = p.number("light_adaptation"),
             .means = {normalized("mean_red"), normalized("mean_green"), normalized("mean_blue")},
             .mean_luminance = normalized("mean_gray"),
             .weights = kOpencvWeights};
-        const Expr x = Expr::input();
-        const double white = receptors.white().value();
-        const double high = p.number("output_maximum") > 0 ? p.number("output_maximum") : white;
-        const double low = p.number("output_minimum");
-        if (!(low < high)) {
-            throw Error("output_minimum is " + shortest(low) + "; expected below output_maximum, " +
-                        shortest(high));
+        const Expr given = p.expr("output_maximum");
+        const Expr low = p.expr("output_minimum");
+        const Expr high = named("high", select(less(0, given), given, receptors.white()));
+        if (fails(less(low, high))) {
+            throw Error("output_minimum is " + shortest(low.value()) +
+                        "; expected below output_maximum, " + shortest(high.value()));
         }
+        const Expr x = Expr::input();
         const Pipeline response =
             p.number("light_adaptation") == 0 ? Pipeline{receptors.curve()} : receptors.stages();
         return Pipeline{limit_to_positive(), curve_stage((x - minimum) / span),

@@ -131,46 +131,47 @@ Operator opencv_drago() {
     op.dialects = "Drago";
     op.parameters = with_apply(
         "luminance",
-        fixed_parameters(
-            {number_parameter("bias", "", 0.85, 0.5, 1, "b: smaller is brighter and flatter"),
-             number_parameter("minimum", "scene-linear", 0, 0, kHalfMax,
-                              "smallest channel of the picture, shown as black"),
-             statistic_parameter(
-                 number_parameter("maximum", "scene-linear", 1, 1e-6, kHalfMax,
-                                  "largest channel of the picture"),
-                 "largest channel",
-                 [](const SceneStatistics& s) {
-                     return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
-                 }),
-             log_average(0.5),
-             statistic_parameter(
-                 number_parameter("maximum_gray", "scene-linear", 1, 1e-6, kHalfMax,
-                                  "largest 0.114 R + 0.587 G + 0.299 B of the picture"),
-                 "maximum luminance", [](const SceneStatistics& s) { return s.maximum_luminance; }),
-             number_parameter("output_minimum", "", 0, 0, 100,
-                              "smallest channel of the result before it is stretched"),
-             number_parameter("output_maximum", "", 0, 0, kHalfMax,
-                              "largest channel of the result before it is stretched (0: that of "
-                              "the largest gray)")}));
+
+        {number_parameter("bias", "", 0.85, 0.5, 1, "b: smaller is brighter and flatter"),
+         number_parameter("minimum", "scene-linear", 0, 0, kHalfMax,
+                          "smallest channel of the picture, shown as black"),
+         statistic_parameter(
+             number_parameter("maximum", "scene-linear", 1, 1e-6, kHalfMax,
+                              "largest channel of the picture"),
+             "largest channel",
+             [](const SceneStatistics& s) {
+                 return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
+             }),
+         log_average(0.5),
+         statistic_parameter(number_parameter("maximum_gray", "scene-linear", 1, 1e-6, kHalfMax,
+                                              "largest 0.114 R + 0.587 G + 0.299 B of the picture"),
+                             "maximum luminance",
+                             [](const SceneStatistics& s) { return s.maximum_luminance; }),
+         number_parameter("output_minimum", "", 0, 0, 100,
+                          "smallest channel of the result before it is stretched"),
+         number_parameter("output_maximum", "", 0, 0, kHalfMax,
+                          "largest channel of the result before it is stretched (0: that of "
+                          "the largest gray)")});
     op.warnings = {kChannelsMayClip};
     op.differences = {{DocumentedDifference::Kind::exceeds_white, 5.3, ""}};
     op.build = [](const Params& p) -> Pipeline {
-        const double minimum = p.number("minimum");
-        const double span = p.number("maximum") - minimum;
-        const double average = (p.number("log_average") - minimum) / span;
-        const double largest = (p.number("maximum_gray") - minimum) / span;
-        if (!(span > 0 && average > 0 && largest > 0)) {
-            throw Error("minimum is " + shortest(minimum) +
+        const Expr minimum = p.expr("minimum");
+        const Expr span = named("span", p.expr("maximum") - minimum);
+        const Expr average = named("average", (p.expr("log_average") - minimum) / span);
+        const Expr largest = named("largest", (p.expr("maximum_gray") - minimum) / span);
+        if (fails(less(0, span)) || fails(less(0, average)) || fails(less(0, largest))) {
+            throw Error("minimum is " + shortest(minimum.value()) +
                         "; expected below maximum, log_average and maximum_gray");
         }
-        const double exponent = std::log(p.number("bias")) / std::log(0.5);
-        const double low = p.number("output_minimum");
-        const double high = p.number("output_maximum") > 0
-                                ? p.number("output_maximum")
-                                : std::log1p(largest / average) / std::log(10.0);
-        if (!(low < high)) {
-            throw Error("output_minimum is " + shortest(low) + "; expected below output_maximum, " +
-                        shortest(high));
+        const Expr exponent = named("exponent", log(p.expr("bias")) / std::log(0.5));
+        const Expr given = p.expr("output_maximum");
+        const Expr low = p.expr("output_minimum");
+        const Expr at_largest =
+            named("at_largest", log_of_1_plus(largest / average) / std::log(10.0));
+        const Expr high = named("high", select(less(0, given), given, at_largest));
+        if (fails(less(low, high))) {
+            throw Error("output_minimum is " + shortest(low.value()) +
+                        "; expected below output_maximum, " + shortest(high.value()));
         }
         const Expr x = Expr::input();
         const Expr base = named("base", 2 + 8 * pow(max(x / largest, 0x1p-100), exponent));

@@ -73,8 +73,8 @@ TEST(Definition, EveryBuiltInReadsBackAsTheSameExpression) {
         EXPECT_TRUE(own->working == op.op->working) << what;
         EXPECT_TRUE(again.output_primaries() == op.output_primaries()) << what;
         EXPECT_EQ(again.peak(), op.peak()) << what;
-        EXPECT_EQ(own->output, op.op->output) << what;
-        if (op.op->output == OutputKind::code_value) {
+        EXPECT_EQ(again.output(), op.output()) << what;
+        if (op.output() == OutputKind::code_value) {
             EXPECT_EQ(own->code_power, op.op->code_power) << what;
         }
         EXPECT_EQ(own->bounds.simd, op.op->bounds.simd) << what;

@@ -884,7 +884,7 @@ TEST(Simd, StatisticsAsUniformsKeepTheBound) {
             }
         }
     }
-    EXPECT_EQ(tested, 14);
+    EXPECT_EQ(tested, 16);
 }
 
 TEST(Simd, StatisticsThatAreFixedHaveNoUniforms) {

@@ -246,6 +246,8 @@ Operator galacean() {
     op.negatives = kNegativesClampAtZero;
     op.differences = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
                       {DocumentedDifference::Kind::exceeds_white, 1.02, ""}};
+    op.bounds = {.lut3d = 0.1,
+                 .reason = "a 3D LUT of glow and red modifier, which change colors near black"};
     op.build = [](const Params&) -> Pipeline {
         const Vector3 w = kGalaceanAp1ToXyz[1];
         const std::array<Expr, 3> ap0 = {Expr::input(0), Expr::input(1), Expr::input(2)};

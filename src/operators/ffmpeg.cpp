@@ -152,6 +152,10 @@ Operator ffmpeg() {
                       {DocumentedDifference::Kind::exceeds_white, kInfinity, "gamma"},
                       {DocumentedDifference::Kind::exceeds_white, 1.1, "reinhard"},
                       {DocumentedDifference::Kind::exceeds_white, 1.1, "mobius"}};
+    op.bounds = {.lut3d = 0.12,
+                 .reason =
+                     "the slope of the desaturation jumps at the luminance desat, and no node "
+                     "of a 3D LUT is there; desat=0 needs no 3D LUT"};
     op.build = [](const Params& p) -> Pipeline {
         Pipeline stages = {limit_to_positive()};
         if (p.number("desat") > 0) {

@@ -126,6 +126,10 @@ Operator needle() {
     op.license = "formula and constants only; none of its code is used";
     op.dialects = "PBR Neutral";
     op.negatives = kNegativesClampAtZero;
+    op.bounds = {.lut3d = 0.12,
+                 .reason =
+                     "the slope jumps where the largest channel passes 0.8, and no node of a "
+                     "3D LUT is there"};
     op.build = [](const Params&) -> Pipeline {
         constexpr double kStart = 0.8;
         constexpr double kRange = 1 - kStart;

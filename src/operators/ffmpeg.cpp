@@ -152,7 +152,7 @@ Operator ffmpeg() {
                       {DocumentedDifference::Kind::exceeds_white, kInfinity, "gamma"},
                       {DocumentedDifference::Kind::exceeds_white, 1.1, "reinhard"},
                       {DocumentedDifference::Kind::exceeds_white, 1.1, "mobius"}};
-    op.bounds = {.lut3d = 0.12,
+    op.bounds = {.lut3d = 0.3,
                  .reason =
                      "the slope of the desaturation jumps at the luminance desat, and no node "
                      "of a 3D LUT is there; desat=0 needs no 3D LUT"};

@@ -15,9 +15,8 @@ namespace {
 using Verdict = EngineToneMapper::Verdict;
 
 /// Names that programs share, and that people use without one.
-constexpr const char* kAmbiguousNames[] = {"ACES",      "ACESFilmic", "Cineon",
-                                           "Filmic",    "Hejl",       "Neutral",
-                                           "Reinhard2", "Uncharted",  "Uncharted2"};
+constexpr const char* kAmbiguousNames[] = {"ACES", "ACESFilmic", "Cineon",    "Filmic",
+                                           "Hejl", "Neutral",    "Uncharted", "Uncharted2"};
 
 /// A name as names with a program are compared: letters and digits.
 std::string key_of(std::string_view name) {

@@ -44,7 +44,7 @@ def test_refused_names(report, command, tw):
         shown = eval_with(command, name)
         first, *lines = shown.stderr.splitlines()
         report.check(f"{name}: exit status 2, one message, then lines",
-                     shown.returncode == 2 and first.startswith("tonewright: ") and all(line.startswith("  ") for line in lines),
+                     shown.returncode == 2 and first.startswith("tonewright: ") and all(line.startswith(" ") for line in lines),
                      shown.stderr)
         for part in parts:
             report.check(f"{name}: {part}", part in shown.stderr, shown.stderr)

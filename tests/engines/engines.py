@@ -384,6 +384,34 @@ def ffmpeg():
     return {f"tonemap={curve}{desat}": with_filter(f"tonemap={curve}{desat}") for desat in ("", ":desat=0") for curve in curves}
 
 
+def opencv():
+    """Module cv2. It takes the first channel for red, so pictures in its own order have the weights of red and blue swapped."""
+    try:
+        import cv2
+    except ImportError:
+        skip("the Python module cv2 is missing (Debian: python3-opencv)")
+
+    def with_operator(operator):
+        return lambda rgb: operator.process(np.ascontiguousarray(rgb[None, :, ::-1]))[0, :, ::-1]
+
+    return {"createTonemap": with_operator(cv2.createTonemap(1.0)),
+            "createTonemapReinhard": with_operator(cv2.createTonemapReinhard(1.0, 0.0, 1.0, 0.0)),
+            "createTonemapDrago": with_operator(cv2.createTonemapDrago(1.0, 1.0, 0.85))}
+
+
+def opencv_settings(name: str, rgb: np.ndarray) -> dict:
+    """What OpenCV measures in the picture, for the operator's parameters; those of the result are missing."""
+    largest = float(rgb.max())
+    if name == "createTonemap":
+        return {"divisor": largest}
+    gray = rgb.astype(float) @ [0.114, 0.587, 0.299] / largest  # the smallest channel is 0
+    logs = np.log(np.maximum(gray, 1e-4))
+    if name == "createTonemapReinhard":
+        key = (logs.max() - logs.mean()) / (logs.max() - logs.min())
+        return {"maximum": largest, "contrast": 0.3 + 0.7 * key**1.4, "light_adaptation": 1}
+    return {"maximum": largest, "maximum_gray": gray.max() * largest, "log_average": np.exp(logs.mean()) * largest}
+
+
 @dataclass
 class Engine:
     """Packages of npm, the program's first; `version` is that of the table's rows."""
@@ -392,6 +420,8 @@ class Engine:
     packages: list[str]
     tone_mappers: Callable[..., ToneMappers]
     is_light: bool = False  # a few small packages, for every run of the tests
+    # Name, colors -> parameters that the program measures in the picture.
+    settings: Callable[[str, np.ndarray], dict] | None = None
 
     @property
     def title(self) -> str:
@@ -425,6 +455,7 @@ ENGINES = [
     Engine("Needle Engine", "4.16.5", ["@needle-tools/engine@4.16.5", "@needle-tools/three@0.169.19"], needle),
     Engine("hdrify", "1.2.1", ["hdrify@1.2.1"], hdrify, is_light=True),
     Engine("ffmpeg", "5.1.9", [], ffmpeg, is_light=True),
+    Engine("OpenCV", "4.6.0", [], opencv, settings=opencv_settings),
 ]
 
 

@@ -233,8 +233,9 @@ std::string engines_as_markdown() {
         text +=
             "| tone mapper | operator | verdict | largest difference | |\n|---|---|---|--:|---|\n";
         for (const EngineToneMapper* row : group) {
-            text += fmt::format("| {} | {} | {} | {} | {} |\n", row->name, in_code(row->op),
-                                name_of(row->verdict), difference_of(*row), notes_of(*row, usual));
+            text +=
+                fmt::format("| {} | {} | {} | {} | {} |\n", in_code(row->name), in_code(row->op),
+                            name_of(row->verdict), difference_of(*row), notes_of(*row, usual));
         }
         text += "\n";
     }

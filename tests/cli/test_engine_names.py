@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of other programs' tone mappers as operators, `list --engines`, and which operators have an HDR version."""
+import colorsys
 import json
 import os
 import subprocess
@@ -79,6 +80,27 @@ def test_list(report, command):
     report.check("each name", all(row["name"] in text for row in rows))
     refused = subprocess.run([command, "list", "hable", "--engines"], capture_output=True, text=True, check=False)
     report.check("no operator with --engines", refused.returncode == 2 and "expected none with --engines" in refused.stderr, refused.stderr)
+
+
+def test_distances(report, command):
+    """Mean differences of sRGB code values in 8-bit steps, over grays and 12 hues of two saturations from -6 to 6 stops about 0.18."""
+    colors = []
+    for stops in range(-6, 7):
+        for saturation in (0, 0.5, 0.9):
+            for degrees in range(0, 360 if saturation else 30, 30):
+                pure = np.array(colorsys.hsv_to_rgb(degrees / 360, 1, 1))
+                colors.append(0.18 * 2.0**stops * (1 - saturation + saturation * pure))
+    tables = run(command, "list", "--engines", "--markdown").split('### "Hejl"')[1].split("###")[0]
+    rows = [line.split(" | ") for line in tables.splitlines() if line.startswith("| ") and "`" in line]
+    text = "\n".join(" ".join(map(repr, color)) for color in np.array(colors).tolist()) + "\n"
+    shown = [np.array(run(command, "eval", row[1].strip("`"), "--display", "srgb", stdin=text).split(), float) for row in rows]
+    report.check("Hejl has at least four meanings", len(rows) >= 4)
+    for i, row in enumerate(rows):
+        for j, cell in enumerate(row[3:]):
+            distance = 255 * np.abs(shown[i] - shown[j]).mean()
+            printed = float(cell.strip(" |"))
+            # Half a unit of the digit that is printed: one decimal below 10.
+            report.check(f"{row[1]}, {rows[j][1]}: {printed}", abs(printed - distance) <= (0.051 if distance < 10 else 0.51), str(distance))
 
 
 def test_hdr(report, command):

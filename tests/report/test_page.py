@@ -467,6 +467,17 @@ def check_hdr_forms(report, command, page, file):
     report.check("HDR: an operator without it says so", "no HDR version" in page.run(note), page.run(note))
 
 
+def test_names(report, page, file):
+    """The tables of names that other programs use, below the dialects."""
+    page.open(file, "#tab=dialects")
+    heads = page.run("[...document.querySelectorAll('#dialects h3')].map((head) => head.textContent)")
+    report.check("names of other programs", '"ACES"' in heads and '"Filmic"' in heads, str(heads))
+    rows = page.run("[...document.querySelectorAll('#dialects .names th[scope=row]')].map((head) => head.textContent)")
+    report.check("an operator and its uses", any(row.endswith("hejl_burgess_dawson: three.js CineonToneMapping, postprocessing CINEON, "
+                                                              "model-viewer cineon, gainmap-js CineonToneMapping, "
+                                                              "ray-tracing-renderer CineonToneMapping") for row in rows), str(rows))
+
+
 def test_screenshots(request, page, file):
     """No test: with --screenshots, pictures for people to look at."""
     folder = request.config.getoption("--screenshots")

@@ -75,7 +75,7 @@ TEST(EnginesLists, TextFitsTerminals) {
 TEST(EnginesLists, MarkdownHasEveryRow) {
     const std::string text = engines_as_markdown();
     for (const EngineToneMapper& row : engine_tone_mappers())
-        EXPECT_NE(text.find("| " + row.name + " |"), std::string::npos) << row.name;
+        EXPECT_NE(text.find("| `" + row.name + "` |"), std::string::npos) << row.name;
     EXPECT_EQ(meaning_tables().size(), ambiguous_names().size());
     EXPECT_NE(text.find("### \"ACES\"\n"), std::string::npos);
 }

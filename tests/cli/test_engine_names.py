@@ -56,6 +56,16 @@ def test_refused_names(report, command, tw):
             report.check(f"{name} in Python: one line", "\n" not in str(error) and name in str(error), str(error))
 
 
+def test_meanings_of_every_command(report, command, scratch):
+    chart = scratch / "chart.exr"
+    run(command, "chart", "-o", chart, "--width", "64", "--height", "36", "-q")
+    for arguments in (["apply", chart, scratch / "a.png", "--operator", "ACES"], ["compare", chart, "ACES", "aces_20", "-o", scratch / "b.png"],
+                      ["bake", "ACES", "-o", scratch / "a.cube"], ["shader", "ACES", "--language", "c"],
+                      ["conformance", "ACES", "-o", scratch / "kit"]):
+        done = subprocess.run([command, *map(str, arguments)], capture_output=True, text=True, check=False)
+        report.check(f"{arguments[0]} lists the meanings", done.returncode == 2 and "mean difference in 8-bit steps" in done.stderr, done.stderr)
+
+
 def test_note(report, command):
     """Terminals see a note about AgX; files do not."""
     ours, theirs = os.openpty()

@@ -34,6 +34,7 @@
 #include "tasks/pictures/input_files.h"
 #include "tasks/pictures/metering.h"
 #include "tasks/pictures/read_picture.h"
+#include "tonewright/engines.h"
 #include "tonewright/image_io.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
@@ -494,6 +495,8 @@ int run_apply(const ApplyOptions& given) {
         const int exit_code = run_on_files(std::move(options));
         streams.finish();
         return exit_code;
+    } catch (const AmbiguousNameError&) {
+        throw;  // main() prints the meanings of the name
     } catch (const Error& e) {
         Problem problem = e.problem();
         for (std::string* text : {&problem.what, &problem.value, &problem.expected})

@@ -58,7 +58,7 @@ def test_refused_names(report, command, tw):
 
 def test_meanings_of_every_command(report, command, scratch):
     chart = scratch / "chart.exr"
-    run(command, "chart", "-o", chart, "--width", "64", "--height", "36", "-q")
+    run(command, "chart", "-o", chart, "--width", "320", "--height", "180", "-q")
     for arguments in (["apply", chart, scratch / "a.png", "--operator", "ACES"], ["compare", chart, "ACES", "aces_20", "-o", scratch / "b.png"],
                       ["bake", "ACES", "-o", scratch / "a.cube"], ["shader", "ACES", "--language", "c"],
                       ["conformance", "ACES", "-o", scratch / "kit"]):

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "base/strings.h"
 #include "base/half_value.h"
+#include "base/strings.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -150,7 +150,7 @@ std::string exr_file(const ShaderTexture& texture) {
     for (std::uint32_t y = 0; y < height; ++y) {
         append(file, y, 4);
         append(file, row - 8, 4);
-        for (const std::size_t channel : {3, 2, 1, 0}) {
+        for (const std::size_t channel : {3U, 2U, 1U, 0U}) {
             for (std::size_t x = 0; x < width; ++x)
                 append_half(file, texture.rgba[4 * (std::size_t{y} * width + x) + channel]);
         }

@@ -626,8 +626,8 @@ const std::vector<ShaderApplication>& shader_applications() {
          "glshader fragment=\"\\\"$(cat FILE)\\\"\" on scene-linear frames, and with a file "
          "tonewright.vert beside it also vertex=\"\\\"$(cat tonewright.vert)\\\"\"; uniforms by "
          "its "
-         "property `uniforms`. Frames hold 0 to 1: --exposure undoes the scale of brighter "
-         "scenes."},
+         "property `uniforms`. Frames hold 0 to 1: write the file with an "
+         "exposure that undoes the scale of brighter scenes."},
     };
     return applications;
 }

@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "base/format_number.h"
+#include "base/half_value.h"
 #include "base/random.h"
 #include "full_counts.h"
-#include "base/half_value.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"

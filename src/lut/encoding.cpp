@@ -5,8 +5,8 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 std::vector<std::string> lut_format_names() {
-    return {"cube", "clf", "ctf", "spi1d", "spi3d", "csp",      "resolve_cube",
-            "3dl",  "lut", "icc", "hald",  "strip", "strip_up", "raw"};
+    return {"cube", "clf", "ctf",  "spi1d", "spi3d",    "csp", "resolve_cube", "3dl",
+            "lut",  "icc", "hald", "strip", "strip_up", "raw", "ktx2"};
 }
 
 std::string name_of(LutFormat format) {

@@ -12,9 +12,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// In the order of LutFormat.
-const std::array<std::vector<std::string>, 14>& extensions() {
+const std::array<std::vector<std::string>, 15>& extensions() {
     static const std::vector<std::string> picture = {".png", ".tif", ".tiff", ".exr"};
-    static const std::array<std::vector<std::string>, 14> all = {{{".cube"},
+    static const std::array<std::vector<std::string>, 15> all = {{{".cube"},
                                                                   {".clf"},
                                                                   {".ctf"},
                                                                   {".spi1d"},
@@ -27,7 +27,8 @@ const std::array<std::vector<std::string>, 14>& extensions() {
                                                                   picture,
                                                                   picture,
                                                                   picture,
-                                                                  {".raw"}}};
+                                                                  {".raw"},
+                                                                  {".ktx2"}}};
     return all;
 }
 

@@ -52,6 +52,7 @@ constexpr std::array<FormatTraits, 14> kFormats = {{
     {"strip", false, true, 32, 2, 64, {16, 8, 32}},
     {"strip_up", false, true, 32, 2, 64, {16, 8, 32}},
     {"raw", false, true, kDefaultCubeSize, 2, 129, {32, 0, 0}},
+    {"ktx2", false, true, kDefaultCubeSize, 2, 129, {32, 0, 0}},
 }};
 
 const FormatTraits& traits_of(LutFormat format) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/format_number.h"
+#include "base/ktx2.h"
 #include "base/little_endian.h"
 #include "base/strings.h"
 #include "lut/clf.h"
@@ -177,6 +179,18 @@ std::string write_3dl(const Lut& lut, const LutRequest& r) {
     return text + "\nLUT8\ngamma 1.0\n";
 }
 
+/// RGBA in 32-bit floats, red along x.
+std::string write_ktx2(const Lut& lut, const Lines& header) {
+    std::vector<float> rgba;
+    rgba.reserve(lut.values.size() / 3 * 4);
+    for (std::size_t i = 0; i < lut.values.size(); ++i) {
+        rgba.push_back(lut.values[i]);
+        if (i % 3 == 2) rgba.push_back(1);
+    }
+    return ktx2_file(rgba, {lut.size, lut.size, lut.size}, Ktx2Texel::single,
+                     fmt::format("{}", fmt::join(header, "\n")));
+}
+
 std::string write_raw(const Lut& lut) { return little_endian_bytes(lut.values); }
 
 /// Text after the word in the first line that begins with it.
@@ -230,6 +244,8 @@ std::string write_lut(const Lut& lut, const LutRequest& request, const LutError&
                              header());
         case LutFormat::raw:
             return write_raw(lut);
+        case LutFormat::ktx2:
+            return write_ktx2(lut, header());
         case LutFormat::hald:
         case LutFormat::strip:
         case LutFormat::strip_up:

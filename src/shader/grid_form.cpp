@@ -13,6 +13,7 @@
 
 #include "base/base64.h"
 #include "base/half_value.h"
+#include "base/ktx2.h"
 #include "base/little_endian.h"
 #include "expr/nodes.h"
 #include "shader/float_form.h"
@@ -61,51 +62,8 @@ std::string cube_file(const ShaderTexture& texture) {
     return text;
 }
 
-/// KTX 2.0 (Khronos), one level of VK_FORMAT_R16G16B16A16_SFLOAT, without supercompression.
-std::string ktx2_file(const ShaderTexture& texture) {
-    constexpr std::uint32_t kFormat = 97;
-    constexpr std::uint32_t kDescriptor = 104;  // begins after the header and the index
-    constexpr std::uint32_t kSamples = 4;
-    constexpr std::uint32_t kDescriptorSize = 4 + 24 + 16 * kSamples;
-    constexpr std::uint32_t kKeys = kDescriptor + kDescriptorSize;
-    const std::string writer("KTXwriter\0Tonewright " TONEWRIGHT_VERSION,
-                             sizeof("KTXwriter\0Tonewright " TONEWRIGHT_VERSION));
-    std::string keys;
-    append(keys, writer.size(), 4);
-    keys += writer;
-    keys.resize((keys.size() + 3) / 4 * 4);
-    const std::string texels = halves(texture);
-    const std::size_t begin = (kKeys + keys.size() + 7) / 8 * 8;
-    std::string file("\xABKTX 20\xBB\r\n\x1A\n", 12);
-    for (const std::uint32_t number :
-         {kFormat, 2U, static_cast<std::uint32_t>(texture.size[0]),
-          static_cast<std::uint32_t>(texture.size[1]), static_cast<std::uint32_t>(texture.size[2]),
-          0U, 1U, 1U, 0U, kDescriptor, kDescriptorSize, kKeys,
-          static_cast<std::uint32_t>(keys.size())})
-        append(file, number, 4);
-    append(file, 0, 16);  // no global data of a supercompression
-    for (const std::size_t number : {begin, texels.size(), texels.size()})
-        append(file, number, 8);
-    // A basic descriptor block: linear RGB, Rec.709, a texel of 8 bytes, four signed floats.
-    append(file, kDescriptorSize, 4);
-    append(file, 0, 4);
-    append(file, 2, 2);
-    append(file, kDescriptorSize - 4, 2);
-    append(file, 0x00010101, 4);
-    append(file, 0, 4);
-    append(file, 8, 8);
-    for (std::uint32_t i = 0; i < kSamples; ++i) {
-        constexpr std::uint32_t kSignedFloat = 0xC0;
-        append(file, 16 * i, 2);
-        append(file, 15, 1);
-        append(file, kSignedFloat | (i == 3 ? 15 : i), 1);
-        append(file, 0, 4);
-        append(file, 0xBF800000, 4);
-        append(file, 0x3F800000, 4);
-    }
-    file += keys;
-    file.resize(begin);
-    return file + texels;
+std::string in_ktx2(const ShaderTexture& texture) {
+    return ktx2_file(texture.rgba, texture.size, Ktx2Texel::half, "");
 }
 
 /// OpenEXR, uncompressed half floats: node x, y, z at column x and row y + height * z.
@@ -278,7 +236,7 @@ constexpr GridForm kForms[] = {
      .note = "// Its file is {name}.ktx2: Handle<Image> with #[texture({binding}, dimension = "
              "\"3d\", filterable = false)].\n",
      .suffix = ".ktx2",
-     .contents = ktx2_file},
+     .contents = in_ktx2},
     {.application = "godot",
      .is_default = true,
      .holds_halves = true,

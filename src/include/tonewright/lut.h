@@ -34,7 +34,8 @@ enum class LutFormat : unsigned char {
     hald,
     strip,
     strip_up,
-    raw
+    raw,
+    ktx2
 };
 /// @throws Error with the nearest name.
 [[nodiscard]] TONEWRIGHT_API LutFormat parse_lut_format(std::string_view text);

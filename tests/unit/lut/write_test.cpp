@@ -21,12 +21,12 @@ TEST(LutFormatName, RoundTrips) {
     EXPECT_EQ(parse_lut_format("spi1d"), LutFormat::spi1d);
     EXPECT_EQ(parse_lut_format("spi3d"), LutFormat::spi3d);
     EXPECT_EQ(parse_lut_format("raw"), LutFormat::raw);
-    EXPECT_EQ(lut_format_names().size(), 14U);
+    EXPECT_EQ(lut_format_names().size(), 15U);
     for (const std::string& name : lut_format_names())
         EXPECT_EQ(name_of(parse_lut_format(name)), name);
     EXPECT_EQ(error_of([] { (void)parse_lut_format("cub"); }),
               "format is cub; expected cube, clf, ctf, spi1d, spi3d, csp, resolve_cube, 3dl, "
-              "lut, icc, hald, strip, strip_up or raw; did you mean cube?");
+              "lut, icc, hald, strip, strip_up, raw or ktx2; did you mean cube?");
 }
 
 /// A .cube file by the specification (Adobe, Cube LUT 1.0): keywords, then lines of three numbers.

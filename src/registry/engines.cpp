@@ -18,13 +18,15 @@ using Verdict = EngineToneMapper::Verdict;
 constexpr const char* kAmbiguousNames[] = {"ACES", "ACESFilmic", "Cineon",    "Filmic",
                                            "Hejl", "Neutral",    "Uncharted", "Uncharted2"};
 
-/// A name as names with a program are compared: letters and digits.
+/// A name as names with a program are compared: letters and digits. Empty if it has control
+/// characters, which no name has.
 std::string key_of(std::string_view name) {
-    std::string key = lowercase(name);
-    std::erase_if(key, [](char c) {
-        return !((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
-                 static_cast<unsigned char>(c) >= 0x80);
-    });
+    std::string key;
+    for (const char c : lowercase(name)) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < 0x20 || code == 0x7F) return {};
+        if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || code >= 0x80) key += c;
+    }
     return key;
 }
 

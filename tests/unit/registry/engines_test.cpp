@@ -81,6 +81,7 @@ TEST(Engines, MeaningsNameTheirPrograms) {
     EXPECT_EQ(of("hable_gdc:playcanvas"), std::vector<std::string>{"PlayCanvas TONEMAP_HEJL"});
     EXPECT_EQ(of("hejl_2015"), std::vector<std::string>{"Hejl 2015"}) << "an operator's own title";
     EXPECT_TRUE(meanings_of("hable_gdc").empty()) << "no program's name";
+    EXPECT_TRUE(meanings_of("ha\nble").empty()) << "a typing error";
     std::set<std::string> operators;
     for (const NameMeaning& meaning : meanings_of("Filmic"))
         EXPECT_TRUE(operators.insert(meaning.op).second) << meaning.op;

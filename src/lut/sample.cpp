@@ -35,7 +35,7 @@ struct FormatTraits {
 };
 
 /// In the order of LutFormat.
-constexpr std::array<FormatTraits, 14> kFormats = {{
+constexpr std::array<FormatTraits, 15> kFormats = {{
     {"cube", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
     {"clf", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
     {"ctf", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},

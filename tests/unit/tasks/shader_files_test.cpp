@@ -39,7 +39,9 @@ TEST(ShaderFiles, TexturesLieBesideTheText) {
     ASSERT_FALSE(result.beside.empty());
     EXPECT_EQ(read(result.beside[0]).size(), 4 * result.shader.textures[0].rgba.size());
     EXPECT_EQ(folder.files().size(), result.beside.size() + 1);
-    EXPECT_NE(error_of([&] { (void)write_shader_files(request, "", {}); }).find("reads the file tw_aces_20"),
+    EXPECT_NE(error_of([&] {
+                  (void)write_shader_files(request, "", {});
+              }).find("reads the file tw_aces_20"),
               std::string::npos);
 }
 

@@ -40,7 +40,7 @@ std::string descriptor(std::uint32_t bits) {
     append(block, kDescriptorSize - 4, 2);
     append(block, 0x00010101, 4);
     append(block, 0, 4);
-    append(block, kSamples * bits / 8, 8);
+    append(block, std::uint64_t{kSamples} * bits / 8, 8);
     for (std::uint32_t i = 0; i < kSamples; ++i) {
         constexpr std::uint32_t kSignedFloat = 0xC0;
         constexpr std::uint32_t kAlpha = 15;

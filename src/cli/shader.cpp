@@ -32,11 +32,11 @@ struct Options : ViewOptions {
 int list_languages() {
     fmt::print("languages\n");
     for (const ShaderLanguageInfo& info : shader_languages())
-        fmt::print("  {:<12}  {}\n", info.id, info.title);
-    fmt::print("applications\n");
+        fmt::print("  {:<14}  {}\n", info.id, info.title);
+    fmt::print("applications (--for prints what to do with the file)\n");
     for (const ShaderApplication& application : shader_applications()) {
-        fmt::print("  {:<12}  {}, {} out. {}\n", application.id, application.title,
-                   application.display, application.steps);
+        fmt::print("  {:<14}  {}, {} out\n", application.id, application.title,
+                   application.display);
     }
     return kOk;
 }

@@ -13,7 +13,7 @@ import subprocess
 
 import pytest
 from executed import IS_FULL, npm_modules, pick
-from pictures import need_program, run, skip
+from pictures import PROJECT, need_program, run, skip
 
 AGX = ["--uniform", "toneMappingExposure=1"]  # of three.js, whose exposure is a factor
 LAST_LINE = re.compile(r"(\d+) colors, (\d+) failures, largest error (\S+?)(?:, line \d+)?$")
@@ -179,6 +179,30 @@ def test_hlsl(report, kits):
     check_shader(report, kits, "hlsl")
 
 
+def test_docs(report, command, folder):
+    """The commands of docs/shaders.md, with the functions that the page takes for granted."""
+    need_browser()
+    page = (PROJECT / "docs/shaders.md").read_text().split("## Test your engine")[1]
+    example = re.search(r"```sh\n(.*?)```", page, re.DOTALL)[1]
+    printed = re.search(r"```text\n(.*?)\n```", page, re.DOTALL)[1]
+    place = folder / "docs"
+    place.mkdir()
+    run(command, "conformance", "khronos_neutral", "-o", place / "neutral_kit")
+    three_chunk(command, place).rename(place / "tonemapping.glsl")
+    for language, name in (("c", "engine.h"), ("js", "engine.mjs")):
+        run(command, "shader", "khronos_neutral", "--language", language, "-o", place / name)
+    with (place / "engine.mjs").open("a") as module:
+        module.write("\nexport { tw_khronos_neutral as toneMap };\n")
+    with (place / "engine.h").open("a") as header:
+        header.write("\n#define tonemap tw_khronos_neutral\n")
+    for line in example.splitlines():
+        status, output = runs("sh", "-ec", line, cwd=place)
+        report.check(f"{line}: {output.splitlines()[-1]}", status == 0 and "286 colors, 0 failures" in output, output[-2000:])
+        if "run_glsl" in line:
+            # The figure is that of SwiftShader; another renderer may differ in the last place.
+            report.check("the line of the docs", LAST_LINE.search(output)[0].split(",")[:2] == printed.split(",")[:2], output)
+
+
 # --------------------------------------------------------------------------------------------------
 # The runners and the command
 
@@ -214,7 +238,7 @@ def test_misuse(report, kits, folder):
     need_program("cc", "gcc")
     kit = kits.of("reinhard")
     engine = folder / "one.mjs"
-    engine.write_text("export const one = () => [1, 1, 1];\n")
+    engine.write_text("export const one = () => [1, 1, 1];\nexport const throws = () => { throw new Error('no'); };\n")
     damaged = folder / "damaged.csv"
     damaged.write_text("gray,1,2,3\n")
     empty = folder / "empty.csv"
@@ -227,7 +251,7 @@ def test_misuse(report, kits, folder):
     header.write_text("static void one(const float in[3], float out[3]) { (void)in; out[0] = out[1] = out[2] = 1; }\n")
     run("cc", "-DFUNCTION=one", "-include", header, kit / "run.c", "-lm", "-o", folder / "one")
     program = folder / "one"
-    cases = [("run_js.mjs", []), ("run_js.mjs", [engine]), ("run_js.mjs", [engine, "two"]), ("run_js.mjs", [engine, "one", "--no"]),
+    cases = [("run_js.mjs", []), ("run_js.mjs", [engine]), ("run_js.mjs", [engine, "two"]), ("run_js.mjs", [engine, "throws"]), ("run_js.mjs", [engine, "one", "--no"]),
              ("run_js.mjs", [folder / "none.mjs", "one"]), ("run_js.mjs", [engine, "one", "--table", damaged]),
              ("run_js.mjs", [engine, "one", "--table", empty]), ("run_js.mjs", [engine, "one", "--uniform", "a=1"]),
              ("run_results.mjs", [short]), ("run_results.mjs", [folder / "none.csv"]),

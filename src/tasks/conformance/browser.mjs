@@ -3,7 +3,7 @@
 // Runs a function in a page of a headless browser: Chromium with its software renderer. The environment variable
 // BROWSER replaces this command, such as BROWSER='google-chrome --headless=new --no-sandbox' for the GPU.
 import { spawn } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtemp, rm } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -12,7 +12,7 @@ import { misuse } from './compare.mjs';
 
 const CHROMIUM = 'chromium --headless=new --no-sandbox --no-first-run --use-angle=swiftshader --enable-unsafe-swiftshader ' +
     '--enable-unsafe-webgpu --use-webgpu-adapter=swiftshader';
-const SECONDS = 120;
+const SECONDS = 300;
 
 /** Numbers that `run(data)` returns in the page. JSON has no NaN, so they travel as words. */
 export async function inBrowser(run, data) {
@@ -25,8 +25,17 @@ export async function inBrowser(run, data) {
             await answer(false, String(error));
         }
     </script>`;
-    const profile = mkdtempSync(join(tmpdir(), 'conformance-'));
+    const profile = await mkdtemp(join(tmpdir(), 'conformance-'));
     let browser;
+    const end = () => {
+        try {
+            process.kill(process.platform === 'win32' ? browser.pid : -browser.pid, 'SIGKILL');  // its children, too
+        } catch {
+            // It has ended, or it never began.
+        }
+    };
+    process.on('exit', end);
+    for (const signal of ['SIGINT', 'SIGTERM']) process.once(signal, () => misuse(`ended by ${signal}`));
     const { ok, text } = await new Promise((resolve) => {
         const fail = (reason) => resolve({ ok: false, text: reason });
         const server = createServer(async (request, response) => {
@@ -38,16 +47,17 @@ export async function inBrowser(run, data) {
         }).listen(0, '127.0.0.1', () => {
             const [program, ...flags] = (process.env.BROWSER || CHROMIUM).split(' ');
             const url = `http://127.0.0.1:${server.address().port}/`;
-            browser = spawn(program, [...flags, `--user-data-dir=${profile}`, url], { stdio: 'ignore' });
+            browser = spawn(program, [...flags, `--user-data-dir=${profile}`, url], { stdio: 'ignore', detached: true });
             browser.on('error', (error) => fail(`${error.message}; set BROWSER to the command of a browser`));
             browser.on('exit', (status) => fail(`${program} ended with status ${status}`));
             setTimeout(() => fail(`${program}: no result after ${SECONDS} s`), 1000 * SECONDS).unref();
         });
     });
-    browser.removeAllListeners('exit');
-    const ended = new Promise((resolve) => browser.on('exit', resolve).on('error', resolve));
-    if (browser.exitCode === null && browser.kill()) await ended;
-    rmSync(profile, { recursive: true, force: true, maxRetries: 10 });
+    const ended = new Promise((resolve) => browser.once('exit', resolve));
+    end();
+    if (browser.pid && browser.exitCode === null && browser.signalCode === null) await ended;
+    // Its children may still write for a moment. What then stays is in the folder of temporary files.
+    await rm(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 }).catch(() => {});
     return ok ? text.split(' ').map(Number) : misuse(text);
 }
 

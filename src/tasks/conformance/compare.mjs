@@ -9,6 +9,9 @@ export function misuse(message) {
     process.exit(2);
 }
 
+// The status 1 is that of failing rows.
+process.on('uncaughtException', (error) => misuse(error.stack));
+
 /** The command line of a runner: its words, --codes, --table FILE, and --uniform NAME=NUMBER where the usage has it. */
 export function commandLine(usage, words) {
     const options = { codes: { type: 'boolean' }, table: { type: 'string' } };

@@ -2,7 +2,7 @@
  *
  * Runs void FUNCTION(const float scene[3], float display[3]) on the colors of a table. C and C++ compile it.
  *
- *   cc -DFUNCTION=tonemap -include engine.h run.c -lm -o run && ./run colors.csv
+ *   cc -DFUNCTION=tonemap -include ./engine.h run.c -lm -o run && ./run colors.csv
  *
  * Exit status: 0 if all rows are within their tolerances, 1 if not, 2 for misuse. */
 #include <math.h>

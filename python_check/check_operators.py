@@ -23,8 +23,9 @@ RELATIVE = 1e-9
 # Where the result is a difference (Hable's E/F, saturation, matrices, S(0)), 1e-16 of the terms is left beside 0; the
 # terms are of the size of the color's largest channel, or of 1. The looks' power of 0.8 raises that to 2e-13.
 ABSOLUTE = 1e-12
-# Operators whose clamp hides that their terms are larger than the result: the color times its own luminance.
-HIDDEN_TERMS = {"reinhard2": 100}
+# Operators whose clamp hides that their terms are larger than the result: the color times its own luminance. The matrix to
+# the signal of the rods and its inverse cancel, and sRGB's slope of 12.92 at black enlarges the rest.
+HIDDEN_TERMS = {"reinhard2": 100, "ferwerda": 20, "durand_dorsey_rods": 20}
 # Displays with an infinite slope at black, where 1e-16 of light is 2e-7 in code, are compared as light. HLG: its root.
 DISPLAY_LIGHT = {"rec1886": lambda code: code**2.4, "g22": lambda code: code**2.2, "rec2020": lambda code: code**2.4,
                  "rec2100_pq": lambda code: pq_decode(code) / 100, "p3d65_pq": lambda code: pq_decode(code) / 100,

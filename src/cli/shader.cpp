@@ -172,8 +172,7 @@ void add_shader(CommandLine& program) {
                 {.suggest = suggest_uniforms, .takes_one_each = true, .separator = ','});
     command.add(
         "--tables", "KIND", &options->tables,
-        "tables and 3D LUTs as `array` or `texture`, or nodes of 3D LUTs by their `formula` "
-        "(default: by size and application)",
+        "tables and 3D LUTs as `texture` or `array`, or 3D LUTs computed by their `formula`",
         {.choices = {"texture", "array", "formula"}});
     command.add("--curves", "KIND", &options->curves,
                 "curves of one number as `formula`, or `fitted` polynomials where these are faster",

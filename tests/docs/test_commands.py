@@ -34,6 +34,7 @@ FOLLOWED = {"docs/cookbook.md", "docs/own_operators.md", "docs/formula_to_pictur
 NOT_RUN = {
     "./run": "builds, installs packages or runs tests",
     "ctest": "runs tests",
+    "node neutral_kit/": "needs the functions of an engine; cli.conformance_docs runs it",
     "cmake --preset dev": "builds everything",
     "dpkg-buildpackage": "builds everything; `./run release` runs it",
     "tests/install/release.sh": "needs the files of a release",

@@ -10,7 +10,7 @@ trap 'rm -rf "$folder"' EXIT
 source "$(dirname "$0")/lib/npm.bash" "$folder" three@0.187.0 postprocessing@6.39.6
 cat >"$folder/read.mjs" <<'J'
 import {readFileSync} from 'fs';
-const text = readFileSync(process.argv[2] + '/node_modules/postprocessing/build/index.js', 'utf8');
+const text = readFileSync(new URL(import.meta.resolve('postprocessing')), 'utf8');
 const shader = /vec3 Reinhard2ToneMapping\(vec3 color\)\{([\s\S]*?return clamp\([^;]*;)\}/.exec(text)[1];
 const defaults = text.split('ToneMappingEffect = class')[1].slice(0, 4000);
 const [white, gray] = ['maxLuminance', 'middleGrey'].map(name => Number(new RegExp(name + ' = ([\\d.]+)').exec(defaults)[1]));
@@ -20,7 +20,7 @@ const f = new Function('color', 'toneMappingExposure', 'averageLuminance', 'midd
 const map = v => f(v, 1, 1, gray, white, x => x, Math.max, (x, lo, hi) => Math.min(Math.max(x, lo), hi));
 console.log(`white ${white}, gray ${gray}; 0.02, 0.18, 1: ${[0.02, 0.18, 1].map(v => map(v).toFixed(6)).join(' ')}`);
 J
-seen=$(node "$folder/read.mjs" "$folder")
+seen=$(node "$folder/read.mjs")
 echo "$seen"
 python3 -c 'L = lambda v: 0.6 * v * (1 + 0.6 * v / 16) / (1 + 0.6 * v)
 print("the equation: %.6f %.6f %.6f" % tuple(map(L, (0.02, 0.18, 1))))'

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "pipeline/tone_curve.h"
@@ -79,6 +80,20 @@ inline ParameterSpec sdr_or_hdr_parameter(std::string help) {
     return display_parameter(
         choice_parameter("output", {"sdr", "hdr"}, "sdr", std::move(help)),
         [](const DisplayFacts& display) -> std::string { return display.is_hdr ? "hdr" : "sdr"; });
+}
+
+/// Parameters "minimum" and "maximum" of operators that stretch the range of the picture.
+inline ParameterSpec smallest_channel_parameter() {
+    return number_parameter("minimum", "scene-linear", 0, 0, kHalfMax,
+                            "smallest channel of the picture, shown as black");
+}
+inline ParameterSpec largest_channel_parameter() {
+    return statistic_parameter(
+        number_parameter("maximum", "scene-linear", 1, 1e-6, kHalfMax,
+                         "largest channel of the picture"),
+        "largest channel", [](const SceneStatistics& s) {
+            return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
+        });
 }
 
 /// Parameter "limit" of operators that limit colors to the gamut of a display. The display chooses

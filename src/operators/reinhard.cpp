@@ -436,15 +436,8 @@ Operator opencv() {
                               "0 adapts to the means of the picture, 1 to the pixel")})[0],
         number_parameter("color_adaptation", "", 0, 0, 1,
                          "0 adapts all channels to the gray, 1 adapts each channel to itself"),
-        number_parameter("minimum", "scene-linear", 0, 0, kHalfMax,
-                         "smallest channel of the picture, shown as black"),
-        statistic_parameter(
-            number_parameter("maximum", "scene-linear", 1, 1e-6, kHalfMax,
-                             "largest channel of the picture"),
-            "largest channel",
-            [](const SceneStatistics& s) {
-                return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
-            }),
+        smallest_channel_parameter(),
+        largest_channel_parameter(),
         statistic_parameter(
             number_parameter("contrast", "", 0.6, 0.3, 1,
                              "m: power of the adaptation; larger has more contrast"),

@@ -131,18 +131,8 @@ Operator opencv_drago() {
     op.dialects = "Drago";
     op.parameters = with_apply(
         "luminance",
-
         {number_parameter("bias", "", 0.85, 0.5, 1, "b: smaller is brighter and flatter"),
-         number_parameter("minimum", "scene-linear", 0, 0, kHalfMax,
-                          "smallest channel of the picture, shown as black"),
-         statistic_parameter(
-             number_parameter("maximum", "scene-linear", 1, 1e-6, kHalfMax,
-                              "largest channel of the picture"),
-             "largest channel",
-             [](const SceneStatistics& s) {
-                 return std::max({s.maximum_rgb[0], s.maximum_rgb[1], s.maximum_rgb[2]});
-             }),
-         log_average(0.5),
+         smallest_channel_parameter(), largest_channel_parameter(), log_average(0.5),
          statistic_parameter(number_parameter("maximum_gray", "scene-linear", 1, 1e-6, kHalfMax,
                                               "largest 0.114 R + 0.587 G + 0.299 B of the picture"),
                              "maximum luminance",

@@ -97,8 +97,10 @@ std::string tone_mappers_of_program(std::string_view name) {
             continue;
         std::vector<std::string> names;
         for (const EngineToneMapper& other : engine_tone_mappers()) {
-            if (other.program == row.program && other.verdict != Verdict::none)
-                names.push_back(other.names.empty() ? other.name : other.names.front());
+            if (other.program != row.program || other.verdict == Verdict::none) continue;
+            const std::string& own = other.names.empty() ? other.name : other.names.front();
+            // Versions share names.
+            if (std::find(names.begin(), names.end(), own) == names.end()) names.push_back(own);
         }
         return row.program + " with " + join_choices(names);
     }

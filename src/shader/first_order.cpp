@@ -16,7 +16,8 @@ constexpr double kPole = 1e12;
 
 }  // namespace
 
-FirstOrderError first_order_error(const std::array<Expr, 3>& outputs) {
+FirstOrderError first_order_error(const std::array<Expr, 3>& outputs,
+                                  const std::map<const Grid*, double>& of_nodes) {
     const Tape tape(outputs);
     const std::vector<TapeInstruction>& code = tape.code();
     const Sensitivity probes = measure_sensitivity(code, tape.outputs());
@@ -46,6 +47,8 @@ FirstOrderError first_order_error(const std::array<Expr, 3>& outputs) {
             has_pole = has_pole || probes.sensitivity[p][i] >= kPole;
             sum.rounded_once += error.once * probes.sensitivity[p][i];
             sum.vulkan += error.vulkan * probes.sensitivity[p][i];
+            const auto of_node = of_nodes.find(code[i].grid);
+            if (of_node != of_nodes.end()) sum.vulkan += of_node->second * probes.sensitivity[p][i];
         }
         // At a pole, such as a root of 0, first order gives no estimate.
         if (has_pole) continue;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <map>
+
 #include "shader/program.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -15,6 +18,8 @@ struct FirstOrderError {
 
 /// Absolute up to 1, relative above.
 /// @param outputs  outputs of compose(), after the metric
-[[nodiscard]] FirstOrderError first_order_error(const std::array<Expr, 3>& outputs);
+/// @param of_nodes  errors of the nodes of Grids
+[[nodiscard]] FirstOrderError first_order_error(const std::array<Expr, 3>& outputs,
+                                                const std::map<const Grid*, double>& of_nodes = {});
 
 TONEWRIGHT_NAMESPACE_END

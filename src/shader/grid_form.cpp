@@ -383,8 +383,13 @@ LanguageFacts language_for(const ShaderApplication& application) {
 ShaderTables tables_for(const ShaderApplication& application, const ShaderProgram& program,
                         ShaderTables tables) {
     const GridForm* const form = grid_form(application);
-    const bool is_too_much = form && form->is_only_one && grids_of(program).size() > 1;
-    return is_too_much && tables == ShaderTables::by_size ? ShaderTables::formula : tables;
+    if (!form || !form->is_only_one || grids_of(program).size() < 2) return tables;
+    if (tables == ShaderTables::texture) {
+        throw Error(Problem{
+            .value = "the operator reads several 3D LUTs",
+            .expected = "<<tables=formula>>: " + application.title + " has a texture for one"});
+    }
+    return tables == ShaderTables::by_size ? ShaderTables::formula : tables;
 }
 
 GridSource grid_source(const Grid& grid, const LanguageFacts& language, ShaderTables tables,

@@ -239,9 +239,12 @@ LanguageFacts language_of(const ShaderRequest& request) {
     return request.application ? language_for(*request.application) : facts_of(request.language);
 }
 
-ShaderTables tables_of(const ShaderRequest& request, const ShaderProgram& program) {
-    return request.application ? tables_for(*request.application, program, request.tables)
-                               : request.tables;
+/// True if the text could compute the nodes that it has in half floats.
+bool are_halves_with_formulas(const GridsInText& grids) {
+    return std::any_of(grids.begin(), grids.end(),
+                       [](const auto& grid) { return !grid.second->has_formula(); }) &&
+           std::all_of(grids.begin(), grids.end(),
+                       [](const auto& grid) { return grid.first->has_formula(); });
 }
 
 double measure_in_float(const ShaderRequest& request, const ShaderProgram& program,
@@ -324,11 +327,11 @@ std::string output_text(const ShaderRequest& request) {
     return "code values for " + display.title + " (" + display.source + ")";
 }
 
-/// Estimate of the largest error of nodes. It reaches the code value with a slope near 1, because
-/// nodes are code values or their logarithms.
-double error_of_nodes(const GridsInText& grids) {
-    double worst = 0;
+/// Estimates of the largest error of each Grid's nodes.
+std::map<const Grid*, double> errors_of_nodes(const GridsInText& grids) {
+    std::map<const Grid*, double> errors;
     for (const auto& [exact, in_text] : grids) {
+        double& worst = errors[exact];
         const std::vector<double>& right = exact->nodes();
         const std::vector<double>& got = in_text->nodes();
         for (std::size_t i = 0; i < right.size(); ++i)
@@ -336,7 +339,7 @@ double error_of_nodes(const GridsInText& grids) {
         if (in_text->has_formula())
             worst = std::max(worst, first_order_error(node_formula(*exact)).vulkan);
     }
-    return worst;
+    return errors;
 }
 
 /// Result of measure_shader(), from the request's cache folder if present.
@@ -517,24 +520,11 @@ std::string shader_function_name(const ShaderRequest& request) {
     return name;
 }
 
-std::optional<double> node_error(const ShaderApplication& application, const View& view) {
-    const LanguageFacts language = language_for(application);
-    double error = 0;
-    for (const Expr& e : nodes_of(compose(build_view(view)))) {
-        if (e.op() != ExprOp::grid) continue;
-        const bool has_formula = e.grid()->has_formula();
-        if (!has_formula && !language.has_textures) return std::nullopt;
-        // Nodes are code values of at most 1; half a step of a half float.
-        if (language.holds_halves && !(has_formula && language.prefers_formula)) error = 0x1p-12;
-    }
-    return error;
-}
-
 ShaderErrors measure_shader(const ShaderRequest& request) {
     check(request);
     const ShaderProgram program = program_of(request);
-    const GridsInText grids = grids_in_text(
-        program, language_of(request), tables_of(request, program), shader_function_name(request));
+    const GridsInText grids =
+        grids_in_text(program, language_of(request), request.tables, shader_function_name(request));
     ShaderErrors errors;
     errors.in_float = measure_in_float(request, program, grids);
     if (request.is_inverse) return errors;
@@ -554,13 +544,14 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
     for (Expr& e : outputs)
         e = substitute(metric, Span<const Expr>(&e, 1));
     constexpr double kUseless = 0.1;
-    const double estimate = first_order_error(outputs).vulkan + error_of_nodes(grids);
+    const double estimate = first_order_error(outputs, errors_of_nodes(grids)).vulkan;
     if (estimate < kUseless) errors.vulkan_estimate = estimate;
     return errors;
 }
 
-Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
-    check(request);
+Shader write_shader(const ShaderRequest& given, const ShaderErrors* errors) {
+    check(given);
+    ShaderRequest request = given;
     const Pipeline pipeline = pipeline_of(request);
     ShaderProgram program = program_of(request);
     add_names_of_numbers(names_in(program), program.names);
@@ -568,14 +559,26 @@ Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     Shader shader;
     shader.function = shader_function_name(request);
     const std::string definition = definition_hash(pipeline);
-    const GridsInText grids =
-        grids_in_text(program, language, tables_of(request, program), shader.function);
-    shader.errors =
-        errors && grids.empty() ? *errors : known_errors(request, program, definition, grids);
+    if (request.application)
+        request.tables = tables_for(*request.application, program, request.tables);
+    GridsInText grids;
+    const auto measure = [&] {
+        grids = grids_in_text(program, language, request.tables, shader.function);
+        shader.errors =
+            errors && grids.empty() ? *errors : known_errors(request, program, definition, grids);
+    };
+    measure();
+    // Looks amplify the error of half floats.
+    constexpr double kTenBits = 1.0 / 1023;
+    if (request.tables == ShaderTables::by_size && shader.errors.in_float > kTenBits &&
+        are_halves_with_formulas(grids)) {
+        request.tables = ShaderTables::formula;
+        measure();
+    }
     const std::string prologue =
         *language.prologue ? std::string("\n") + language.prologue : std::string();
-    PrintedProgram printed = print_program(program, language, shader.function, request.uniforms,
-                                           tables_of(request, program));
+    PrintedProgram printed =
+        print_program(program, language, shader.function, request.uniforms, request.tables);
     const std::string comments = header(request, shader, definition, grids);
     shader.text = comments + prologue + printed.text;
     shader.textures = std::move(printed.textures);
@@ -587,11 +590,10 @@ Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
         facts.texture = "";
         facts.loader = "";
         facts.prologue = "";
-        other = print_program(program, facts, shader.function, request.uniforms,
-                              tables_of(request, program))
-                    .text;
+        other =
+            print_program(program, facts, shader.function, request.uniforms, request.tables).text;
     }
-    return wrap(*request.application, shader, arguments_of(request), other);
+    return wrap(*request.application, std::move(shader), arguments_of(request), other);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -559,49 +559,54 @@ const std::vector<ShaderApplication>& shader_applications() {
         {"threejs", "three.js (WebGL)", ".js", ShaderLanguage::glsl_es, "linear",
          "Call use_...() before the first material is compiled, and set renderer.toneMapping to "
          "CustomToneMapping, instead of a tone mapping of three.js. renderer.toneMappingExposure "
-         "is "
-         "a factor before the curve."},
+         "is a factor before the curve.",
+         true},
         {"threejs-tsl", "three.js (WebGPU)", ".js", ShaderLanguage::wgsl, "linear",
          "Call renderer.library.addToneMapping(..., CustomToneMapping), and set "
          "renderer.toneMapping to CustomToneMapping, instead of a tone mapping of three.js. "
-         "renderer.toneMappingExposure is a factor before the curve."},
+         "renderer.toneMappingExposure is a factor before the curve.",
+         true},
         {"postprocessing", "postprocessing (three.js)", ".js", ShaderLanguage::glsl_es, "linear",
          "Add new ..._Effect() to an EffectPass of a composer in half floats, instead of "
-         "ToneMappingEffect, with renderer.toneMapping NoToneMapping. renderer.toneMappingExposure "
-         "is "
-         "a factor before the curve."},
+         "ToneMappingEffect, with renderer.toneMapping NoToneMapping. "
+         "renderer.toneMappingExposure is a factor before the curve.",
+         true},
         {"babylon", "Babylon.js", ".js", ShaderLanguage::glsl_es, "linear",
          "Call use_...(scene) before the first material is compiled; it takes the place of "
          "TONEMAPPING_ACES. The exposure of imageProcessingConfiguration is a factor before the "
-         "curve. Babylon.js encodes by the power 1/2.2, as a display of gamma 2.2."},
+         "curve. Babylon.js encodes by the power 1/2.2, as a display of gamma 2.2.",
+         true},
         {"playcanvas", "PlayCanvas", ".js", ShaderLanguage::glsl_es, "linear",
          "Call use_...(device) before the first material is compiled, and set toneMapping to "
          "TONEMAP_ACES2, whose place it takes. app.scene.exposure is a factor before the curve. "
-         "PlayCanvas encodes by the power 1/2.2, as a display of gamma 2.2."},
+         "PlayCanvas encodes by the power 1/2.2, as a display of gamma 2.2.",
+         true},
         {"cesium", "CesiumJS", ".js", ShaderLanguage::glsl_es, "linear",
          "Call use_...(scene) with scene.highDynamicRange on; it takes the place of "
          "Tonemapper.ACES. postProcessStages.exposure is a factor before the curve. CesiumJS "
-         "encodes "
-         "by the power 1/2.2, as a display of gamma 2.2."},
+         "encodes by the power 1/2.2, as a display of gamma 2.2.",
+         true},
         {"filament", "Filament", ".h", ShaderLanguage::c, "linear",
          "Hand its class to ColorGrading::Builder::toneMapper(), instead of a tone mapper of "
-         "Filament, with luminanceScaling and gamutMapping off. Exposure comes before it. Filament "
-         "shows a 3D LUT of it, and encodes.",
-         "lin_rec2020"},
+         "Filament, with luminanceScaling and gamutMapping off. Exposure comes before it. "
+         "Filament shows a 3D LUT of it, and encodes.",
+         true, "lin_rec2020"},
         {"obs", "OBS (obs-shaderfilter)", ".shader", ShaderLanguage::hlsl, "srgb",
          "A filter User-defined shader. OBS passes pictures of 8 bits from 0 to 1, which are "
-         "already "
-         "tone mapped; exposure is an argument."},
+         "already tone mapped; exposure is an argument."},
         {"bevy", "Bevy", ".wgsl", ShaderLanguage::wgsl, "linear",
          "A full-screen material with Tonemapping::None on the camera. Exposure comes before it. "
-         "Bevy encodes its picture."},
+         "Bevy encodes its picture.",
+         true},
         {"godot", "Godot 4", ".gd", ShaderLanguage::glsl, "linear",
          "Add the script to the Compositor of a WorldEnvironment or a camera, and set the "
          "Environment's tone mapper to Linear, with exposure and white 1. Godot encodes its "
-         "picture."},
+         "picture.",
+         true},
         {"unity", "Unity (URP)", ".shader", ShaderLanguage::hlsl, "linear",
-         "A Full Screen Pass Renderer Feature after post-processing, with Tonemapping None and HDR "
-         "on. Exposure comes before it. URP encodes its picture."},
+         "A Full Screen Pass Renderer Feature after post-processing, with Tonemapping None and "
+         "HDR on. Exposure comes before it. URP encodes its picture.",
+         true},
         {"unreal", "Unreal Engine", ".ush", ShaderLanguage::hlsl, "srgb",
          "A post-process material at `Replacing the Tonemapper` with a Custom node. Unreal's "
          "exposure comes before it; its result is not encoded again, and bloom and vignette are "
@@ -610,24 +615,21 @@ const std::vector<ShaderApplication>& shader_applications() {
          "mpv --vo=gpu --vf=format=gamma=srgb --glsl-shader=FILE on scene-linear pictures (EXR), "
          "which mpv does not tone map then; sliders need mpv 0.36."},
         {"reshade", "ReShade", ".fx", ShaderLanguage::hlsl, "linear",
-         "For games that pass scRGB (scene-linear) to ReShade, with their own tone mapping off; in "
-         "other games the picture is already tone mapped."},
+         "For games that pass scRGB (scene-linear) to ReShade, with their own tone mapping off; "
+         "in other games the picture is already tone mapped."},
         {"resolve", "DaVinci Resolve (DCTL)", ".dctl", ShaderLanguage::dctl, "rec1886",
          "Copy it into the LUT folder; a DCTL effect on a node whose input is scene-linear, "
-         "without "
-         "tone mapping before or after it."},
+         "without tone mapping before or after it."},
         {"nuke", "Nuke (BlinkScript)", ".rpp", ShaderLanguage::blink, "linear",
          "The Kernel File of a BlinkScript node on scene-linear RGBA; the Viewer and the Write "
-         "node "
-         "encode what it returns, with sRGB."},
+         "node encode what it returns, with sRGB."},
         {"shadertoy", "Shadertoy", ".glsl", ShaderLanguage::glsl_es, "srgb",
          "Paste it into Image; iChannel0 holds the scene-linear picture."},
         {"gstreamer", "GStreamer glshader", ".frag", ShaderLanguage::glsl_es, "srgb",
          "glshader fragment=\"\\\"$(cat FILE)\\\"\" on scene-linear frames, and with a file "
          "tonewright.vert beside it also vertex=\"\\\"$(cat tonewright.vert)\\\"\"; uniforms by "
-         "its "
-         "property `uniforms`. Frames hold 0 to 1: write the file with an "
-         "exposure that undoes the scale of brighter scenes."},
+         "its property `uniforms`. Frames hold 0 to 1: write the file with an exposure that "
+         "undoes the scale of brighter scenes."},
     };
     return applications;
 }

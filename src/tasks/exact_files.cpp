@@ -74,9 +74,19 @@ std::optional<ExactFile> ExactFiles::shader(const ShaderApplication& application
         make_view(request_.op, in_units({input.id, input.primaries}, request_.input_units),
                   request_.exposure_stops, request_.display.value_or(application.display),
                   request_.reference_white);
-    const std::optional<double> error = node_error(application, view);
-    if (!error) return std::nullopt;
-    return ExactFile{*error, application.title + ", shader", application.extension, true};
+    double error = 0;
+    if (reads_grid(view)) {
+        ShaderRequest request;
+        request.view = view;
+        request.application = &application;
+        request.cache_folder = request_.cache_folder;
+        try {
+            error = write_shader(request).errors.in_float;
+        } catch (const Error&) {  // it cannot hold the 3D LUT
+            return std::nullopt;
+        }
+    }
+    return ExactFile{error, application.title + ", shader", application.extension, true};
 }
 
 TONEWRIGHT_NAMESPACE_END

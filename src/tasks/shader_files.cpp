@@ -36,6 +36,13 @@ ShaderResult write_shader_files(const ShaderRequest& request, const std::string&
     ShaderResult result{write_shader(request)};
     const Shader& shader = result.shader;
     listener.warn_of(stand_in_warning(request.view.op, "shader", request.uniforms));
+    const std::string& display = request.view.display;
+    if (request.application && request.application->encodes && display != kLinearOutput &&
+        display != kNativeOutput) {
+        listener.warn_of(
+            fmt::format("{} encodes its picture, so code values of {} are encoded twice",
+                        request.application->title, display));
+    }
     constexpr double kTenBits = 1.0 / 1023;
     result.is_double = request.language == ShaderLanguage::javascript && !request.application;
     if (!result.is_double && shader.errors.in_float > kTenBits) {

@@ -4,7 +4,7 @@
 A stand-in takes the place of what each application puts around the file: a module of Bevy, an include of Unity, the
 Custom node of Unreal, the kernel of Resolve. Bevy, Unity and Unreal draw a picture on Dawn, Resolve's runs on pocl; all
 with a slider for exposure, against `tonewright eval`. Files with a 3D LUT are drawn with the texture that other readers find
-in the file beside them: ktx-parse (three.js), OpenImageIO, OpenColorIO.
+in the file beside them: ktx-parse (three.js), OpenImageIO, OpenColorIO; Nuke's kernel runs as C++.
 
     python3 -m pytest tests/shader/test_applications.py --tonewright build/release/bin/tonewright [--screenshots FOLDER]
 """
@@ -22,6 +22,7 @@ from executed import reference
 from lut_encodings import srgb_encode
 from opencl import OpenCl, device
 from pictures import read_rgb
+from test_c_and_dctl import BLINK
 
 SIZE = (320, 180)
 STOPS = 0.5
@@ -181,6 +182,42 @@ static inline float3 at_node(float x, float y, float z) {{
     return resolve(stand_in + re.sub(r"DEFINE_LUT.*\n", "", text), "with_lut", picture)
 
 
+def nuke_with_lut(text: str, folder: pathlib.Path, picture: np.ndarray) -> np.ndarray:
+    """The kernel as C++, whose second input is the picture beside it. Rows of Nuke begin at the bottom."""
+    name = found(r"Image<eRead, eAccessRandom, eEdgeClamped> (\w+);", text)
+    texels = exr(folder / f"{name}.exr", None).astype("<f4")
+    program = f"""{BLINK}
+#include <cstdio>
+#include <vector>
+static std::vector<float> texels({len(texels)});
+template <> struct Image<eRead, eAccessRandom, eEdgeClamped> {{
+    float4 operator()(int x, int y) const {{
+        const float* t = &texels[4 * (x + 57 * (57 * 57 - 1 - y))];
+        return float4(t[0], t[1], t[2], t[3]);
+    }}
+}};
+{text}
+int main(int, char** argv) {{
+    FILE* file = std::fopen(argv[1], "rb");
+    if (std::fread(texels.data(), 4, texels.size(), file) != texels.size()) return 1;
+    float c[3];
+    {found(r"kernel (\w+) :", text)} k;
+    k.define();
+    while (std::fread(c, 4, 3, stdin) == 3) {{
+        k.src() = float4(c[0], c[1], c[2], 1);
+        k.process();
+        const float shown[3] = {{k.dst().x, k.dst().y, k.dst().z}};
+        std::fwrite(shown, 4, 3, stdout);
+    }}
+}}
+"""
+    (folder / "nuke.cpp").write_text(program)
+    subprocess.run(["g++", "-O2", "-Wall", "-Wextra", "-Werror", "nuke.cpp", "-o", "nuke"], cwd=folder, check=True)
+    texels.tofile(folder / "nuke.texels")
+    done = subprocess.run([folder / "nuke", folder / "nuke.texels"], input=picture.astype("<f4").tobytes(), capture_output=True, check=True)
+    return np.frombuffer(done.stdout, "<f4").reshape(-1, 3)
+
+
 def write_png(codes: np.ndarray, path: pathlib.Path) -> None:
     header = f"P6 {SIZE[0]} {SIZE[1]} 255\n".encode()
     path.with_suffix(".ppm").write_bytes(header + np.round(255 * np.clip(codes, 0, 1)).astype(np.uint8).tobytes())
@@ -229,6 +266,10 @@ def test_files(request, report, command, scratch):
     shown = resolve_with_lut((scratch / "lut.dctl").read_text(), scratch, scene)
     np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(scratch / "lut.out")
     drawn["resolve", "agx_blender, a texture"] = scratch / "lut.out", "rec1886"
+    subprocess.run([command, "shader", "agx_blender", "--for", "nuke", "--tables", "texture", "-o", "lut.rpp", "-q"], check=True, cwd=scratch)
+    shown = nuke_with_lut((scratch / "lut.rpp").read_text(), scratch, scene)
+    np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(scratch / "nuke.out")
+    drawn["nuke", "agx_blender, a texture"] = scratch / "nuke.out", "linear"
     print(f"{dawn.run(steps)}, pocl")
     for (application, operator), (out, display) in drawn.items():
         shown = np.fromfile(out, np.float32).reshape(-1, 4)[:, :3].astype(float)

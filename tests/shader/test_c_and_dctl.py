@@ -24,7 +24,7 @@ BLINK = """
 struct float3 { float x, y, z; float3(float a, float b, float c) : x(a), y(b), z(c) {} };
 struct float4 { float x, y, z, w; float4(float a, float b, float c, float d) : x(a), y(b), z(c), w(d) {} };
 enum Granularity { ePixelWise };
-enum Access { eRead, eWrite, eAccessPoint, eEdgeClamped };
+enum Access { eRead, eWrite, eAccessPoint, eAccessRandom, eEdgeClamped };
 template <Granularity> struct ImageComputationKernel {
     template <class T> void defineParam(T& param, const char*, T value) { param = value; }
     void define() {}

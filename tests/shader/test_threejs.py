@@ -20,14 +20,19 @@ from pictures import need_program
 
 HERE = pathlib.Path(__file__).parent
 WIDTH, HEIGHT = 64, 47  # a multiple of 64 has rows without padding in WebGPU
-OPERATORS = ["agx_threejs", "agx_blender", "aces_20", "khronos_neutral", "gt7", "aces_13"]
+# AgX Punchy has two 3D LUTs.
+OPERATORS = ["agx_threejs", "agx_blender", "agx_blender:look=punchy", "aces_20", "khronos_neutral", "gt7", "aces_13"]
 # Of a canvas: half a code of 8 bits, and what SwiftShader's rounding is off.
 HALF_A_CODE = 0.5 / 255 + 1e-4
 
 
+def name_of(operator: str) -> str:
+    return operator.replace(":look=", "_").replace(":", "_")
+
+
 def bound_of(operator: str) -> float:
     # three.js encodes with the power 0.41666 for 1/2.4.
-    return 6.2e-6 + bound_in_application(operator)
+    return 6.2e-6 + bound_in_application(operator.split(":")[0])
 
 
 def run(*arguments, folder: pathlib.Path) -> str:
@@ -54,10 +59,10 @@ def test_page(request, report, command, scratch):
     # three.js multiplies what it writes to a target by a matrix with zeros: infinities become NaN there.
     rgb = np.clip(rgb, np.float32(-65504), np.float32(65504))
     rgba = np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1)
-    files = {"/three/": modules / "three", "/light": rgba.tobytes(), "/modules/": scratch}
+    files = {"/three/": modules / "three", "/light": rgba.tobytes(), "/modules/": scratch, "/three_room.js": HERE / "three_room.js"}
     job = {"width": WIDTH, "height": HEIGHT, "webgl": [], "webgpu": [], "hasExamples": IS_FULL}
     for operator in OPERATORS:
-        name = operator.replace(":", "_")
+        name = name_of(operator)
         run(command, "shader", operator, "--for", "threejs", "-o", name + ".js", "-q", folder=scratch)
         run(command, "shader", operator, "--for", "threejs-tsl", "-o", name + ".tsl.js", "-q", folder=scratch)
         job["webgl"].append({"module": f"/modules/{name}.js", "name": "use_tw_" + name, "hasRoom": operator == OPERATORS[0],
@@ -97,7 +102,7 @@ def test_page(request, report, command, scratch):
         if not gl.get("hasTables"):
             report.compare(f"{what}, OutputPass, floats", np.clip(pixels(f"webgl/{gl['name']}/target"), 0, 1), right, floats)
     for gpu in job["webgpu"]:
-        operator = next(o for o in [*OPERATORS, "agx_blender"] if o.replace(":", "_") == gpu["name"].removeprefix("tw_"))
+        operator = next(o for o in [*OPERATORS, "agx_blender"] if name_of(o) == gpu["name"].removeprefix("tw_"))
         # Materials of WebGPURenderer show no negative light.
         right = reference(command, operator, np.maximum(rgb, 0))
         target = f"webgpu/{gpu['module']}/{gpu['backend']}/target"

@@ -81,7 +81,8 @@ def test_page(request, report, command, scratch, host, title, display):
     rgb = np.clip(rgb, 0, FULL_LIGHT).astype(np.float16).astype(np.float32)
     rgba = np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1)
     job = {"width": WIDTH, "height": HEIGHT, "modules": []}
-    files = {"/npm/": modules, "/light": rgba.tobytes(), "/host.js": HOSTS / f"{host}.js"}
+    files = {"/npm/": modules, "/light": rgba.tobytes(), "/host.js": HOSTS / f"{host}.js",
+             "/three_room.js": HERE / "three_room.js"}
     expected = {}
 
     def add(operator: str, what: str, light: np.ndarray, *options: str, arguments: tuple = (), **settings) -> None:

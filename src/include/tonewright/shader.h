@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +47,8 @@ struct ShaderApplication {
     std::string display;
     /// Instructions for the user: the application's own tone mapper, and the place of exposure.
     std::string steps;
+    /// True if the application encodes what the function returns.
+    bool encodes = false;
     /// Space of the color that the application passes.
     std::string input = "lin_rec709";
 };
@@ -59,8 +60,10 @@ struct ShaderApplication {
 
 /// Storage of tables and 3D LUTs.
 enum class ShaderTables : unsigned char {
-    /// Arrays, but textures for more numbers than a text should have. Where neither is possible,
-    /// or a user would have to connect a texture by hand, the text computes nodes of 3D LUTs.
+    /// Arrays, but textures for more numbers than a text should have. Where neither is possible, a
+    /// user would have to connect a texture by hand, or its half floats would cost a code value of
+    /// 10
+    /// bits, the text computes nodes of 3D LUTs.
     by_size,
     texture,
     array,
@@ -167,12 +170,6 @@ struct Shader {
 
 /// True if the view reads a 3D LUT.
 [[nodiscard]] TONEWRIGHT_API bool reads_grid(const View& view);
-
-/// Largest error of a node of the view's 3D LUTs in a file for the application: 0 without one and
-/// if the text computes them, 2^-12 in half floats. Empty if the application cannot hold them, and
-/// they have no formula.
-[[nodiscard]] TONEWRIGHT_API std::optional<double> node_error(const ShaderApplication& application,
-                                                              const View& view);
 
 /// The name of the function that write_shader() writes.
 [[nodiscard]] TONEWRIGHT_API std::string shader_function_name(const ShaderRequest& request);

@@ -20,7 +20,9 @@ std::string title_of(const EngineToneMapper& row) {
 
 TEST(EnginesTable, EveryOperatorResolves) {
     for (const EngineToneMapper& row : engine_tone_mappers()) {
-        if (!row.op.empty()) EXPECT_NO_THROW((void)resolve_operator(row.op)) << title_of(row);
+        if (!row.op.empty()) {
+            EXPECT_NO_THROW((void)resolve_operator(row.op)) << title_of(row);
+        }
     }
 }
 
@@ -31,8 +33,9 @@ TEST(EnginesTable, RowsAreComplete) {
         EXPECT_TRUE(titles.insert(title).second) << title;
         EXPECT_FALSE(row.order.empty()) << title;
         EXPECT_EQ(row.measured.size(), std::string("2026-11-28").size()) << title;
-        if (row.display != kLinearOutput && row.display != kNativeOutput)
+        if (row.display != kLinearOutput && row.display != kNativeOutput) {
             EXPECT_EQ(find_display(row.display).id, row.display) << title;
+        }
         if (row.verdict == Verdict::none) {
             EXPECT_TRUE(row.op.empty()) << title;
             EXPECT_FALSE(row.note.empty()) << title << ": the reason";
@@ -46,11 +49,13 @@ TEST(EnginesTable, RowsAreComplete) {
 /// Equal means within 1e-6, or within what the note says about the program's own rounding.
 TEST(EnginesTable, VerdictsFollowTheDifferences) {
     for (const EngineToneMapper& row : engine_tone_mappers()) {
-        if (row.verdict == Verdict::equal && *row.difference > 1e-6)
+        if (row.verdict == Verdict::equal && *row.difference > 1e-6) {
             EXPECT_FALSE(row.note.empty()) << title_of(row);
+        }
         // The rounding of an 8-bit picture, in 8-bit codes; of floats, the polynomial of AgX.
-        if (row.verdict == Verdict::equal)
+        if (row.verdict == Verdict::equal) {
             EXPECT_LE(*row.difference, row.unit == "8-bit codes" ? 0.51 : 2e-5) << title_of(row);
+        }
     }
 }
 

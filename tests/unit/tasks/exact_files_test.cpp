@@ -32,7 +32,8 @@ TEST(ExactFiles, ShaderComputesTheNodesOfAGrid) {
     ASSERT_EQ(files.size(), 2U);
     const ExactFile& shader = files[files[0].is_shader ? 0 : 1];
     EXPECT_TRUE(shader.is_shader);
-    EXPECT_EQ(shader.error, 0);
+    EXPECT_GT(shader.error, 0);
+    EXPECT_LT(shader.error, 1e-5) << "float, without a texture";
 }
 
 }  // namespace

@@ -45,6 +45,23 @@ TEST(ShaderFiles, TexturesLieBesideTheText) {
               std::string::npos);
 }
 
+TEST(ShaderFiles, CodeValuesForAnApplicationThatEncodesAreSaid) {
+    const auto warnings_of = [](const char* application, const char* display) {
+        std::vector<std::string> warnings;
+        ShaderRequest request;
+        request.application = &find_shader_application(application);
+        request.view = make_view(resolve_operator("hable"), "lin_rec709", 0, display);
+        (void)write_shader_files(
+            request, "", {.warn = [&](const std::string& line) { warnings.push_back(line); }});
+        return warnings;
+    };
+    ASSERT_EQ(warnings_of("filament", "srgb").size(), 1U);
+    EXPECT_EQ(warnings_of("filament", "srgb")[0],
+              "Filament encodes its picture, so code values of srgb are encoded twice");
+    EXPECT_TRUE(warnings_of("filament", "linear").empty());
+    EXPECT_TRUE(warnings_of("nuke", "srgb").empty()) << "with OpenColorIO, Nuke encodes nothing";
+}
+
 TEST(ShaderFiles, JavascriptIsTheReference) {
     ShaderRequest request = request_for("hable");
     request.language = ShaderLanguage::javascript;

@@ -26,7 +26,8 @@ for folder, direct in {
     "lut": ["registry"],
     "shader": ["registry"],
     "ocio": ["lut"],
-    "image": ["lut"],
+    "picture": ["lut"],  # files by their own libraries
+    "image": ["picture"],
     "verify": ["ocio", "shader"],
     "report": ["base"],  # the page as a file
     "plot": ["engine"],
@@ -49,9 +50,12 @@ PUBLIC = {
     "shader": "shader", "verify": "verify", "lint": "verify", "lut_match": "verify",
 }
 THIRD_PARTY = {
-    "hwy": ["engine", "image"],
+    "hwy": ["engine", "image", "picture"],
     "OpenColorIO": ["ocio", "verify"],
-    "OpenImageIO": ["image", "tasks/pictures", "cli/pictures", "plugin", "python"],
+    "OpenEXR": ["picture"],
+    "libdeflate.h": ["picture"],
+    "zlib.h": ["picture"],
+    "OpenImageIO": ["picture", "image", "tasks/pictures", "cli/pictures", "plugin", "python"],
     "EGL": ["ocio"],
     "yaml-cpp": ["ocio"],
     "lcms2.h": ["lut"],
@@ -63,7 +67,7 @@ THIRD_PARTY = {
     "nlohmann": ["tasks/json.cpp"],
     "toml++": ["definition/toml_text.cpp"],
     "pybind11": ["python"],
-    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "shader_runs", "plot", "tasks", "tasks/pictures", "cli", "cli/pictures", "tools", "plugin", "python"],
+    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "picture", "image", "verify", "shader_runs", "plot", "tasks", "tasks/pictures", "cli", "cli/pictures", "tools", "plugin", "python"],
 }
 # They have names of their own for the parameters of a request.
 FRONT_ENDS = {"cli", "cli/pictures", "tools", "python", "plugin", "definition"}

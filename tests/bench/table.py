@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The benchmark as tables: the engine (tonewright_bench) and whole commands (hyperfine), in Markdown, and as JSON.
+"""The benchmark as tables: the engine (tonewright_bench) and whole commands (commands.py), in Markdown, and as JSON.
 
     ./run bench [--operators hable,agx_blender] [--picture photo.exr] [--json bench.json]
 
@@ -10,31 +10,19 @@ import argparse
 import json
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+import commands
+from commands import call, table
+
 OPERATORS = ("hable,uchimura,reinhard,reinhard:luminance,reinhard_extended,agx_sobotka,aces_hill,reinhard_jodie,"
              "khronos_neutral,agx_blender,aces_13,aces_20")
-COMMAND_OPERATORS = "hable,agx_blender,aces_20"
 FORMS = ["simd", "simd_two_threads", "simd_all_threads", "ocio_lossless", "ocio_default", "ocio_lut65"]
-WIDTH, HEIGHT, FRAMES = 3840, 2160, 100
-
-
-def call(*arguments):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=False)
-    if done.returncode:
-        sys.exit(f"bench: {shlex.join(map(str, arguments))}: exit {done.returncode}: {done.stderr.strip()}")
-    return done.stdout
-
-
-def table(title, header, rows):
-    print(f"\n{title}\n\n| {' | '.join(header)} |\n|{'---|' * len(header)}")
-    for row in rows:
-        print(f"| {' | '.join(row)} |")
+WIDTH, HEIGHT = 3840, 2160
 
 
 def number(x, digits=3):
@@ -108,104 +96,6 @@ def print_newer(newer, forms):
           ["operator", "ours, Mpix/s", "without loss", "default", "times without loss", "times default"], rows)
 
 
-# --------------------------------------------------------------------------------------------------
-# Whole commands
-
-
-def hyperfine(commands, runs, scratch):
-    """[{median, mean, user, system}] in seconds"""
-    out = scratch / "hyperfine.json"
-    subprocess.run(["hyperfine", "--style", "basic", "--warmup", "1", "--runs", str(runs), "--export-json", out,
-                    *commands], stdout=sys.stderr, stderr=sys.stderr, check=True)
-    return json.loads(out.read_text())["results"]
-
-
-def error_of(shown, truth):
-    done = subprocess.run(["oiiotool", shown, truth, "--diff"], capture_output=True, text=True, check=False)
-    found = re.search(r"Max error *= *(\S+)", done.stdout)
-    return float(found[1]) if found else 0.0 if "PASS" in done.stdout else None
-
-
-def make_picture(given, scratch):
-    """A half float EXR of 4K, compressed with ZIP."""
-    path = scratch / "in.exr"
-    call("oiiotool", given, "--ch", "R,G,B", "--resize", f"{WIDTH}x{HEIGHT}", "-d", "half", "--compression", "zip",
-         "-o", path)
-    return path
-
-
-def run_commands(command, operators, picture, runs, scratch):
-    """One row for each operator and kind of output."""
-    views = dict(line.split("\t") for line in call(command, "list", "--views").splitlines())
-    config = scratch / "config"
-    call(command, "config", "-o", config, "--views", ",".join(dict.fromkeys(o.partition(":")[0] for o in operators)))
-    log = scratch / "log.exr"
-    call("oiiotool", "--colorconfig", config / "config.ocio", picture, "--colorconvert", "lin_rec709", "ACEScct",
-         "-d", "half", "-o", log)
-    rows = []
-    for name in operators:
-        truth, cube = scratch / "truth.exr", scratch / "lut.cube"
-        call(command, "apply", picture, truth, "--operator", name, "-d", "float")
-        call(command, "bake", name, "-o", cube, "--3d", "--size", 65, "--input-encoding", "acescct")
-        for kind, depth in (("exr", "half"), ("png", "uint16")):
-            out = {what: scratch / f"{what}.{kind}" for what in ("io", "apply", "ociodisplay", "ffmpeg")}
-            lines = {
-                "io": f"oiiotool {picture} -d {depth} -o {out['io']}",
-                "apply": f"{command} apply {picture} {out['apply']} --operator {name} -d {depth}",
-                "ociodisplay": f"oiiotool --colorconfig {config}/config.ocio {picture} --ociodisplay sRGB "
-                               f"{shlex.quote(views[name])} -d {depth} -o {out['ociodisplay']}",
-            }
-            if kind == "png" and shutil.which("ffmpeg"):
-                lines["ffmpeg"] = (f"ffmpeg -v error -nostdin -y -i {log} -vf lut3d={cube}:interp=tetrahedral "
-                                   f"-pix_fmt rgb48be {out['ffmpeg']}")
-            row = {"operator": name, "output": f"{kind}, {depth}"}
-            for what, result in zip(lines, hyperfine(list(lines.values()), runs, scratch)):
-                row[what] = {"seconds": result["median"], "processor_seconds": result["user"] + result["system"],
-                             "max_error": None if what == "io" else error_of(out[what], truth)}
-            rows.append(row)
-    return rows
-
-
-def run_frames(command, picture, runs, scratch):
-    """A shot of HD frames, as one command and as a loop."""
-    call("oiiotool", picture, "--resize", "1920x1080", "-d", "half", "-o", scratch / "shot.1001.exr")
-    for i in range(1002, 1001 + FRAMES):
-        shutil.copy(scratch / "shot.1001.exr", scratch / f"shot.{i}.exr")
-    rows = []
-    for kind, depth in (("exr", "half"), ("png", "uint16")):
-        options = f"--operator hable -d {depth}"
-        numbers = f"1001 {1000 + FRAMES}"
-        loop, frames = hyperfine(
-            [f"for i in $(seq {numbers}); do {command} apply {scratch}/shot.$i.exr {scratch}/loop.$i.{kind} {options}; "
-             "done",
-             f"{command} apply {scratch}/shot.####.exr {scratch}/out.####.{kind} --frames {numbers.replace(' ', '-')} "
-             f"{options}"], runs, scratch)
-        rows.append({"output": f"{kind}, {depth}", "loop": FRAMES / loop["median"], "frames": FRAMES / frames["median"],
-                     "processors": (frames["user"] + frames["system"]) / frames["mean"]})
-    return rows
-
-
-def print_commands(rows, frames, start):
-    pixels = WIDTH * HEIGHT / 1e6
-    shown = []
-    for row in rows:
-        seconds = {what: row.get(what, {}).get("seconds") for what in ("apply", "io", "ociodisplay", "ffmpeg")}
-        shown.append([f"`{row['operator']}`", row["output"], *map(number, seconds.values()),
-                      number(pixels / seconds["apply"]),
-                      *(times(seconds["apply"], seconds[what]) for what in ("io", "ociodisplay", "ffmpeg")),
-                      *(number(row.get(what, {}).get("max_error"), 2) for what in ("apply", "ociodisplay", "ffmpeg"))])
-    table(f"Seconds of whole commands, {WIDTH}x{HEIGHT}, half EXR in; errors against `apply -d float`, the output's "
-          "rounding included. ffmpeg is given the picture in ACEScct.",
-          ["operator", "out", "apply", "oiiotool, only read and write", "oiiotool --ociodisplay", "ffmpeg lut3d",
-           "apply, Mpix/s", "of read and write", "of --ociodisplay", "of ffmpeg", "error", "--ociodisplay", "ffmpeg"],
-          shown)
-    table(f"Frames per second, {FRAMES} of 1920x1080, `hable`",
-          ["out", "a shell loop", "`--frames`", "times", "processors busy"],
-          [[row["output"], number(row["loop"]), number(row["frames"]), times(row["frames"], row["loop"]),
-            number(row["processors"])] for row in frames])
-    print(f"\n`eval` of one color: {1000 * start:.0f} ms\n")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0],
                                      epilog="Further arguments go to the benchmark of the engine: --target=AVX2, or "
@@ -213,9 +103,9 @@ def main():
     parser.add_argument("bench", type=Path)
     parser.add_argument("command", type=Path)
     parser.add_argument("--operators", default=OPERATORS)
-    parser.add_argument("--command-operators", default=COMMAND_OPERATORS, help="for the whole commands")
     parser.add_argument("--picture", type=Path, help="for the whole commands (default: the chart)")
-    parser.add_argument("--runs", type=int, default=5, help="of each whole command")
+    parser.add_argument("--runs", type=int, default=7, help="of each whole command")
+    parser.add_argument("--before", type=Path, help="another build of the command, which takes turns with it")
     parser.add_argument("--only", choices=["engine", "commands"])
     parser.add_argument("--newer-ocio", type=Path, default=os.environ.get("TONEWRIGHT_NEWER_OCIO"),
                         help="a program that runs what follows it with another OpenColorIO's Python")
@@ -241,13 +131,8 @@ def main():
             if not picture:
                 picture = scratch / "chart.exr"
                 call(command, "chart", "-o", picture, "--width", WIDTH, "--height", HEIGHT, "-d", "half")
-            picture = make_picture(picture, scratch)
-            operators = arguments.command_operators.split(",")
-            results["commands"] = run_commands(command, operators, picture, arguments.runs, scratch)
-            results["frames"] = run_frames(command, picture, max(arguments.runs // 2, 1), scratch)
-            start = hyperfine([f"echo 0.18 0.18 0.18 | {command} eval hable"], 20, scratch)[0]
-            results["eval_seconds"] = start["median"]
-            print_commands(results["commands"], results["frames"], start["median"])
+            before = arguments.before.resolve() if arguments.before else None
+            results["commands"] = commands.run(command, before, picture, arguments.runs, scratch)
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=1) + "\n")
     return 0

@@ -185,6 +185,7 @@ static inline float3 at_node(float x, float y, float z) {{
 def nuke_with_lut(text: str, folder: pathlib.Path, picture: np.ndarray) -> np.ndarray:
     """The kernel as C++, whose second input is the picture beside it. Rows of Nuke begin at the bottom."""
     name = found(r"Image<eRead, eAccessRandom, eEdgeClamped> (\w+);", text)
+    kernel = found(r"kernel (\w+) :", text)
     texels = exr(folder / f"{name}.exr", None).astype("<f4")
     program = f"""{BLINK}
 #include <cstdio>
@@ -201,7 +202,7 @@ int main(int, char** argv) {{
     FILE* file = std::fopen(argv[1], "rb");
     if (std::fread(texels.data(), 4, texels.size(), file) != texels.size()) return 1;
     float c[3];
-    {found(r"kernel (\w+) :", text)} k;
+    {kernel} k;
     k.define();
     while (std::fread(c, 4, 3, stdin) == 3) {{
         k.src() = float4(c[0], c[1], c[2], 1);

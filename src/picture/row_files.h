@@ -34,7 +34,7 @@ class RowWriter {
     RowWriter(const RowWriter&) = delete;
     RowWriter& operator=(const RowWriter&) = delete;
 
-    /// What the file holds, after the types and attributes that the format lacks were replaced.
+    /// The types and attributes of the file, where those that the format lacks are replaced.
     [[nodiscard]] virtual const PictureSpec& spec() const = 0;
     /// The next rows, interleaved and packed.
     /// @param type  HALF or FLOAT, or the type of the file

@@ -45,7 +45,7 @@ for folder, direct in {
 PUBLIC = {
     "version": "base", "error": "base", "span": "base", "generated_files": "base", "expr": "expr", "color": "color",
     "pipeline": "pipeline", "view": "pipeline", "input_encoding": "pipeline", "source_color": "pipeline", "format_color": "pipeline", "engine": "engine", "local": "local", "registry": "registry", "engines": "registry", "definition": "definition",
-    "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image",
+    "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image", "tonemap_options": "picture",
     "image_io": "image", "chart": "image", "contact_sheet": "image", "sequence": "image", "meter": "image",
     "shader": "shader", "verify": "verify", "lint": "verify", "lut_match": "verify",
 }

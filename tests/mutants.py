@@ -33,7 +33,7 @@ from collections import namedtuple
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[1]
-FOLDERS = ["operators", "engine", "color", "ocio", "lut", "image"]
+FOLDERS = ["operators", "engine", "color", "ocio", "lut", "picture", "image"]
 LEAST = 4  # mutants of each folder
 KINDS = ["constant", "sign", "comparison", "order", "channel", "logic"]
 MEMORY = 12 << 30  # bytes that a test may take
@@ -238,6 +238,7 @@ SCRIPTS = {
     "engine": ["python_check.eval", "bench.instructions"],
     "ocio": ["parity.into", "cli", "parity.artifacts", "parity.verify_config", "cli.lut_files"],
     "lut": ["cli.lut_files", "parity.luts", "parity.artifacts", "cli", "clients.tificc"],
+    "picture": ["cli.tags", "cli.pictures", "cli.output"],
     "image": ["cli.pictures", "cli.meter", "cli.compare", "cli.plot", "cli.sequences", "clients.plugin"],
 }
 # The targets that a script needs, if it needs fewer than all.
@@ -249,6 +250,7 @@ UNITS = {
     "engine": ["engine/*"],
     "ocio": ["ocio/*"],
     "lut": ["lut/*"],
+    "picture": ["picture/*", "image/*"],
     "image": ["image/*"],
 }
 

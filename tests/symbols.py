@@ -2,7 +2,8 @@
 """Folders of src/ depend on each other in one direction by linkage, too: reads the compiled symbols.
 
 An object file may leave a symbol of Tonewright undefined only if an object of its own folder or of a
-folder below it (layers.py) defines the symbol. No library that is installed starts a process.
+folder below it (layers.py) defines the symbol. No library that is installed starts a process. picture/ uses headers of
+OpenImageIO, but none of its libraries.
 
 Usage: symbols.py BUILD
 """
@@ -17,7 +18,7 @@ from layers import BELOW, folder_of
 # They start processes.
 STARTERS = {"fork", "vfork", "clone", "posix_spawn", "posix_spawnp", "execl", "execle", "execlp", "execv", "execve", "execvp",
             "execvpe", "fexecve", "popen", "system"}
-INSTALLED = {f"tonewright_{name}.dir" for name in ("core", "ocio", "image")}
+INSTALLED = {f"tonewright_{name}.dir" for name in ("core", "ocio", "picture", "image")}
 NAMESPACE = "10tonewright"  # as it is mangled
 
 
@@ -30,7 +31,7 @@ def main(build: pathlib.Path) -> int:
     if missing:
         print(f"symbols: {missing[0]} is not built")
         return 1
-    defined, wanted, starters = {}, [], []
+    defined, wanted, starters, libraries = {}, [], [], []
     listing = subprocess.run(["nm", "--print-file-name", *map(str, objects)], capture_output=True, text=True,
                              check=True).stdout
     for line in listing.splitlines():
@@ -39,6 +40,8 @@ def main(build: pathlib.Path) -> int:
         path = pathlib.Path(name)
         if kind == "U" and symbol in STARTERS and INSTALLED & set(path.parts):
             starters.append(f"{path}: a library calls {symbol}()")
+        if kind == "U" and "tonewright_picture.dir" in path.parts and re.match(r"_ZN?K?\d+OpenImageIO", symbol):
+            libraries.append(f"{path}: needs {symbol}, of OpenImageIO")
         if NAMESPACE not in symbol:
             continue
         library = next(i for i, part in enumerate(path.parts) if part.endswith(".dir"))
@@ -47,7 +50,7 @@ def main(build: pathlib.Path) -> int:
             wanted.append((path.name, folder, symbol))
         else:
             defined.setdefault(symbol, set()).add(folder)
-    failures = starters
+    failures = starters + libraries
     for name, folder, symbol in wanted:
         homes = defined.get(symbol, set())
         if not homes & {folder, *BELOW[folder]}:

@@ -16,9 +16,10 @@
 
 #include "base/strings.h"
 #include "image/canvas.h"
-#include "image/color_tags.h"
 #include "image/contact_sheet.h"
 #include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/picture_error.h"
 #include "tonewright/engine.h"
 #include "tonewright/error.h"
 #include "tonewright/pipeline.h"
@@ -53,7 +54,7 @@ ImageBuf shown_scene(const ImageBuf& picture, const ROI& part) {
     spec.full_width = window.width();
     spec.full_height = window.height();
     spec.extra_attribs = picture.spec().extra_attribs;
-    erase_attributes(spec, "PixelAspectRatio");
+    erase_attribute(spec, "PixelAspectRatio");
     spec.alpha_channel = -1;
     for (int c = 0; c < count; ++c) {
         const int from = channels[static_cast<std::size_t>(c)];

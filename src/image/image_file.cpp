@@ -9,8 +9,9 @@
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
-#include "image/color_tags.h"
 #include "image/picture_file.h"
+#include "image/source_picture.h"
+#include "image/spec_conversion.h"
 #include "tonewright/image_io.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -52,7 +53,7 @@ OIIO::ImageBuf with_associated_alpha(const OIIO::ImageBuf& image) {
     if (alpha < 0 || image.spec().get_int_attribute("oiio:UnassociatedAlpha", 0) == 0) return image;
     OIIO::ImageBuf result = image.copy(OIIO::TypeFloat);
     multiply_by_alpha(result);
-    erase_attributes(result.specmod(), "oiio:UnassociatedAlpha");
+    erase_attribute(result.specmod(), "oiio:UnassociatedAlpha");
     return result;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/lut_picture.h"
+#include "image/converted_picture.h"
 #include "image/picture_file.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"

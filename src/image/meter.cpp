@@ -13,10 +13,13 @@
 
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "image/picture_description.h"
+#include "image/converted_picture.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/picture_description.h"
+#include "picture/source_pixels.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 
@@ -110,11 +113,11 @@ namespace {
 
 SceneMeter measure_whole(const ImageBuf& src, const MeterOptions& options,
                          SceneMeter::Figures figures, int nthreads) {
-    const ImageSpec spec = described_spec(src);
+    const PictureSpec spec = described_spec(src);
     const SourceColor color = source_color(spec, options.input);
     if (color.convert)
         return measure_whole(converted_picture(src, color), options, figures, nthreads);
-    return measure_picture(spec, options, figures, nthreads, pass_over(src, options));
+    return measure_picture(image_spec(spec), options, figures, nthreads, pass_over(src, options));
 }
 
 }  // namespace
@@ -143,7 +146,7 @@ static SceneMeter measure_rows(PictureReader& reader, const MeterOptions& option
             return;
         }
         if (is_empty(window)) return;
-        const ImageSpec rows = with_color_metadata_alone(spec);
+        const ImageSpec rows = image_spec(with_color_metadata_alone(picture_spec(spec)));
         const int step =
             rows_of_batch(spec.scanline_bytes(), reader.row_step(), spec.height, batch_bytes);
         std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));

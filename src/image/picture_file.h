@@ -6,7 +6,6 @@
 #include <OpenImageIO/imageio.h>
 
 #include <cstddef>
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -17,10 +16,11 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
-#include "image/picture_description.h"
-#include "image/source_picture.h"
+#include "picture/picture_error.h"
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
+#include "tonewright/tonemap_options.h"
+#include "tonewright/view.h"
 
 /// Picture files, a few rows at a time. Reading and writing succeed completely or fail.
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -28,13 +28,6 @@ TONEWRIGHT_NAMESPACE_BEGIN
 class LightLevelMeter;
 class OutputFile;
 struct FormatLimits;
-
-/// `DateTime` of pictures that have none: that of the environment variable SOURCE_DATE_EPOCH, UTC
-/// (reproducible-builds.org/specs/source-date-epoch). Empty: it is not set.
-/// @throws Error  it is not a number of seconds since 1970
-[[nodiscard]] TONEWRIGHT_API std::string source_date();
-/// A date in the form of `DateTime`, UTC.
-[[nodiscard]] TONEWRIGHT_API std::string date_text(std::time_t seconds);
 
 /// No limit, for a picture of our own.
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();

@@ -16,12 +16,16 @@
 
 #include "base/input_file.h"
 #include "base/strings.h"
-#include "image/header_tags.h"
+#include "image/converted_picture.h"
 #include "image/heif_reader.h"
-#include "image/layers.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
 #include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/header_tags.h"
+#include "picture/layers.h"
+#include "picture/picture_description.h"
+#include "picture/source_pixels.h"
 #include "tonewright/image_io.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -286,11 +290,13 @@ PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOp
     if (spec_.deep)
         cannot_read(path, "the picture is deep; expected flat pixels (oiiotool --flatten)");
     const std::string_view format = in_->format_name();
-    complete_header(path, format, subimage_, spec_);
     const std::string extension = extension_of(path);
-    if (!extension.empty()) spec_.attribute(file_tag::kExtension, extension.substr(1));
-    spec_.channelformats.clear();  // all channels are read in the widest of them
-    complete_channel_names(spec_);
+    change_spec(spec_, [&](PictureSpec& spec) {
+        complete_header(path, format, subimage_, spec);
+        if (!extension.empty()) spec.attribute(file_tag::kExtension, extension.substr(1));
+        spec.channelformats.clear();  // all channels are read in the widest of them
+        complete_channel_names(spec);
+    });
     mark_straight_alpha(spec_, format);
     stored_channels_ = spec_.nchannels;
     check_size(options.max_pixels);
@@ -384,7 +390,7 @@ void PictureReader::choose_subimage(const ReadOptions& options) {
             names += (names.empty() ? "" : ", ") +
                      (name.empty() ? fmt::to_string(count) : printable(name));
         if (spec.deep) continue;
-        for (Layer layer : color_layers(spec)) {
+        for (Layer layer : color_layers(picture_spec(spec))) {
             if (layer.name.empty()) layer.name = name;
             // The default view of a stereo file is the first one: OpenEXR, "Multi-View".
             pictures.push_back(std::move(layer));
@@ -406,7 +412,8 @@ void PictureReader::choose_subimage(const ReadOptions& options) {
 
 void PictureReader::choose_layer(const ReadOptions& options) {
     const bool has_layers = std::string_view(in_->format_name()) == "openexr";
-    const std::vector<Layer> layers = has_layers ? color_layers(spec_) : std::vector<Layer>();
+    const std::vector<Layer> layers =
+        has_layers ? color_layers(picture_spec(spec_)) : std::vector<Layer>();
     if (!options.layer.empty()) {
         const Layer* layer = find_layer(layers, options.layer);
         if (!layer) {
@@ -437,7 +444,7 @@ void PictureReader::choose_layer(const ReadOptions& options) {
                              layers.empty() ? "" : "; <<layer>> chooses another"));
         return;
     }
-    deliver(order_of(*layer, spec_), layer->channels.size() > 3);
+    deliver(order_of(*layer, picture_spec(spec_)), layer->channels.size() > 3);
     spec_.attribute(file_tag::kLayer, layer->name);
     if (layers.size() > 1 && options.note) {
         options.note(fmt::format("layer is {}, of {}; <<layer>> chooses another",
@@ -450,12 +457,12 @@ void PictureReader::deliver(const std::vector<int>& channels, bool has_alpha) {
     bool is_identity = static_cast<int>(channels.size()) == spec_.nchannels;
     for (std::size_t i = 0; i < channels.size(); ++i)
         is_identity = is_identity && channels[i] == static_cast<int>(i);
-    reorder(spec_, channels, has_alpha);
+    change_spec(spec_, [&](PictureSpec& spec) { reorder(spec, channels, has_alpha); });
     channels_ = is_identity ? std::vector<int>() : channels;
 }
 
 void PictureReader::convert_colors(const TonemapOptions& options) {
-    SourceColor color = source_color(stored_, options.input);
+    SourceColor color = source_color(picture_spec(stored_), options.input);
     if (resizing_) {
         resizing_ = options;
         spec_ = light_spec(spec_, color, options.unpremult);
@@ -464,7 +471,7 @@ void PictureReader::convert_colors(const TonemapOptions& options) {
         return;
     }
     if (!color.convert) return;
-    spec_ = converted_spec(stored_, color);
+    spec_ = image_spec(converted_spec(picture_spec(stored_), color));
     color_ = std::move(color);
 }
 
@@ -558,7 +565,7 @@ ImageBuf PictureReader::read_all_stored() {
 void report_header(const OIIO::ImageSpec& spec, std::string_view input,
                    const ReadOptions& options) {
     if (!options.warn) return;
-    for (const std::string& line : describe_picture(spec, input).ignored)
+    for (const std::string& line : describe_picture(picture_spec(spec), input).ignored)
         options.warn(line);
 }
 

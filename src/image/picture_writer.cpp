@@ -21,14 +21,18 @@
 #include "base/atomic_file.h"
 #include "base/strings.h"
 #include "base/system_files.h"
-#include "image/color_tags.h"
-#include "image/compression.h"
-#include "image/format_limits.h"
-#include "image/light_levels.h"
 #include "image/output_file.h"
 #include "image/picture_file.h"
-#include "image/png_chunks.h"
+#include "image/source_picture.h"
+#include "image/spec_conversion.h"
 #include "image/written_picture.h"
+#include "picture/color_tags.h"
+#include "picture/compression.h"
+#include "picture/format_limits.h"
+#include "picture/light_levels.h"
+#include "picture/png_chunks.h"
+#include "picture/source_date.h"
+#include "picture/source_pixels.h"
 #include "tonewright/error.h"
 #include "tonewright/view.h"
 
@@ -51,6 +55,10 @@ std::string title_of(const OIIO::TypeDesc& type) {
     return type.c_str();
 }
 
+CompressionOptions compression_of(const WriteOptions& options) {
+    return {options.compression, options.quality, options.subsampling};
+}
+
 }  // namespace
 
 PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int nthreads)
@@ -64,7 +72,7 @@ PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int 
                                     : "the name has no extension that selects a format");
     }
     out_->threads(nthreads);
-    check_compression(path_, codec(), options_);
+    check_compression(path_, codec(), compression_of(options_));
     if (options_.bits > 0 && !format_limits(format()).has_bits) {
         throw Error(
             fmt::format("{}: type is uint{}; expected uint8, uint16, half or float, because "
@@ -127,7 +135,7 @@ void PictureWriter::plan_alpha(ImageSpec& spec) {
     multiplies_by_alpha_ =
         is_straight && (options_.alpha == Alpha::over || (options_.alpha == Alpha::keep && !keeps));
     if (multiplies_by_alpha_ || spec.alpha_channel < 0 || options_.alpha == Alpha::ignore)
-        erase_attributes(spec, "oiio:UnassociatedAlpha");
+        erase_attribute(spec, "oiio:UnassociatedAlpha");
 }
 
 void PictureWriter::plan_channels(ImageSpec& spec, const FormatLimits& limits) {
@@ -140,8 +148,8 @@ void PictureWriter::plan_channels(ImageSpec& spec, const FormatLimits& limits) {
                         back[0], back[1], back[2]));
     }
     plan_alpha(spec);
-    channels_ =
-        file_channels(spec, limits, options_.alpha == WriteOptions::Alpha::ignore || is_over);
+    channels_ = file_channels(picture_spec(spec), limits,
+                              options_.alpha == WriteOptions::Alpha::ignore || is_over);
     if (channels_.empty())
         fail(fmt::format("the picture is in color; expected gray for {}", limits.title));
     std::vector<int> all(static_cast<std::size_t>(spec.nchannels));
@@ -203,7 +211,7 @@ void PictureWriter::plan_cover(ImageSpec& spec, const ImageSpec& picture,
     divides_by_alpha_ = is_associated && limits.alpha == FileAlpha::straight;
     if (divides_by_alpha_) spec.attribute("oiio:UnassociatedAlpha", 1);
     // Displays end at 1, light does not: above it, an opaque surface is clipped, too.
-    const std::optional<TaggedColor> shown = tagged_color(picture);
+    const std::optional<TaggedColor> shown = tagged_color(picture_spec(picture));
     const bool is_light = shown && shown->curve && shown->curve->exponent == 1;
     surface_light_ = is_light ? static_cast<float>(kMostSurfaceLight) : 1.0F;
     becomes_straight_ =
@@ -217,7 +225,7 @@ void PictureWriter::plan_cover(ImageSpec& spec, const ImageSpec& picture,
 void PictureWriter::plan_type(ImageSpec& spec, const ImageSpec& picture,
                               const FormatLimits& limits) const {
     OIIO::TypeDesc type = limits.is_8_bit ? OIIO::TypeDesc::UINT8 : options_.type;
-    const std::optional<TaggedColor> color = tagged_color(picture);
+    const std::optional<TaggedColor> color = tagged_color(picture_spec(picture));
     // ITU-R BT.2100-2 has 10 and 12 bits: 8 show bands.
     if (type == OIIO::TypeUnknown && format() == "png" && color && color->code_points &&
         picture.format.is_floating_point()) {
@@ -225,7 +233,7 @@ void PictureWriter::plan_type(ImageSpec& spec, const ImageSpec& picture,
     }
     spec.set_format(type == OIIO::TypeUnknown ? picture.format : type);
     if (type != OIIO::TypeUnknown)
-        erase_attributes(spec, "oiio:BitsPerSample");  // overrules the type
+        erase_attribute(spec, "oiio:BitsPerSample");  // overrules the type
     if (options_.bits > 0) spec.attribute("oiio:BitsPerSample", options_.bits);
 }
 
@@ -235,7 +243,7 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     spec.channelformats.clear();
     // A single level is not a texture: OpenEXR's writer would wait for the others.
     if (spec.get_string_attribute("textureformat") == "Plain Texture")
-        erase_attributes(spec, "textureformat");
+        erase_attribute(spec, "textureformat");
     const FormatLimits& limits = format_limits(format());
     plan_channels(spec, limits);
     plan_window(spec, picture, limits);
@@ -243,11 +251,12 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
         fail(refusal);
     plan_cover(spec, picture, limits);
     plan_type(spec, picture, limits);
-    set_compression(spec, codec(), options_);
-    if (format() != "openexr") {  // the only format whose color tags they are
-        erase_attributes(spec, "colorInteropID");
-        if (format() != "png" || !options_.write_provenance) erase_attributes(spec, "tonewright:*");
-    }
+    change_spec(spec, [&](PictureSpec& of) {
+        set_compression(of, codec(), compression_of(options_));
+        if (format() == "openexr") return;  // the only format whose color tags they are
+        erase_attributes(of, "colorInteropID");
+        if (format() != "png" || !options_.write_provenance) erase_attributes(of, "tonewright:*");
+    });
     return spec;
 }
 
@@ -281,7 +290,7 @@ void PictureWriter::open(const ImageSpec& picture) {
             !date.empty() && !spec.find_attribute("DateTime"))
             spec.attribute("DateTime", date);
     }
-    const ColorDescription color = describe_color(spec, format());
+    const ColorDescription color = describe_color(picture_spec(spec), format());
     if (!color.icc.empty()) {
         spec.attribute("ICCProfile",
                        OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(color.icc.size())),
@@ -297,8 +306,8 @@ void PictureWriter::open(const ImageSpec& picture) {
             // The levels are known at the end: until then, a chunk without light has their place.
             proxy_->insert(kAfterPngHeader, color.chunk + clli_chunk({}));
             light_levels_place_ = kAfterPngHeader + color.chunk.size();
-            light_levels_ =
-                std::make_unique<LightLevelMeter>(find_display(tagged_color(spec)->name));
+            light_levels_ = std::make_unique<LightLevelMeter>(
+                find_display(tagged_color(picture_spec(spec))->name));
         }
         out_->set_ioproxy(proxy_.get());
         name = fs::path(path_).filename().string();
@@ -331,7 +340,7 @@ void PictureWriter::warn_of_limits(const ImageSpec& requested, const std::string
         limits.push_back(
             fmt::format("pixels are {}, not {}", title_of(type), title_of(options_.type)));
     }
-    const std::optional<TaggedColor> color = tagged_color(requested);
+    const std::optional<TaggedColor> color = tagged_color(picture_spec(requested));
     if (color && color->code_points && type == OIIO::TypeDesc::UINT8) {
         limits.emplace_back("gradients in 8 bits show bands");
     }
@@ -496,7 +505,18 @@ void PictureWriter::write_fitted(const ImageBuf& rows) {
                                static_cast<std::size_t>(file.nchannels);
         rows.get_pixels(part, OIIO::TypeFloat, &kept_[at]);
     }
-    if (light_levels_) light_levels_->add(rows, out_->spec().format, alpha_);
+    if (light_levels_) {
+        const auto channels = static_cast<std::size_t>(rows.nchannels());
+        const auto width = static_cast<std::size_t>(part.width());
+        std::vector<float> pixels(width * channels);
+        for (int y = part.ybegin; y < part.yend; ++y) {
+            ROI line = part;
+            line.ybegin = y;
+            line.yend = y + 1;
+            rows.get_pixels(line, OIIO::TypeFloat, pixels.data());
+            light_levels_->add(pixels.data(), width, channels, out_->spec().format, alpha_);
+        }
+    }
     bool written = false;
     if (format() == "heif") {
         // OpenImageIO 2.4 copies rows as long as libheif's, which have padding: the last one needs

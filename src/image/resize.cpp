@@ -16,10 +16,12 @@
 #include <vector>
 
 #include "base/strings.h"
-#include "image/color_tags.h"
-#include "image/header_tags.h"
-#include "image/picture_description.h"
 #include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/color_tags.h"
+#include "picture/header_tags.h"
+#include "picture/picture_description.h"
+#include "picture/source_pixels.h"
 #include "tonewright/engine.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -125,7 +127,7 @@ void keep_shape(ImageSpec& spec, double factor_x, double factor_y) {
                    static_cast<float>(static_cast<double>(aspect) * factor_y / factor_x));
     // OpenImageIO's writers of JPEG and TIFF take the ratio of these two instead.
     for (const char* name : {"XResolution", "YResolution", "ResolutionUnit"})
-        erase_attributes(spec, name);
+        erase_attribute(spec, name);
 }
 
 bool is_straight(const ImageSpec& spec) {
@@ -144,7 +146,7 @@ class LightRows {
     LightRows(const ImageBuf& picture, const SourceColor& color, const TonemapOptions& options)
         : picture_(picture),
           color_(color),
-          layout_(channel_layout(picture.spec())),
+          layout_(channel_layout(picture_spec(picture.spec()))),
           has_alpha_(layout_.alpha >= 0),
           counts_(has_alpha_ && options.unpremult != TonemapOptions::Unpremult::no),
           is_straight_(is_straight(picture.spec()) &&
@@ -409,7 +411,7 @@ ImageSpec resized_spec(const ImageSpec& picture, std::string_view size, double m
     double width = x.end - x.begin;
     double height = y.end - y.begin;
     // Orientations 5 to 8 lie on their side: JEITA CP-3451, 4.6.4.
-    const bool lies = orientation_of(picture) >= 5;
+    const bool lies = orientation_of(picture_spec(picture)) >= 5;
     if (lies) std::swap(width, height);
     if (requested.percent > 0) {
         width *= requested.percent / 100;
@@ -446,7 +448,7 @@ ImageSpec resized_spec(const ImageSpec& picture, std::string_view size, double m
     if (requested.height > 0)
         keep_shape(spec, width / (x.end - x.begin), height / (y.end - y.begin));
     for (const char* name : {"Exif:PixelXDimension", "Exif:PixelYDimension"})
-        erase_attributes(spec, name);
+        erase_attribute(spec, name);
     return spec;
 }
 
@@ -456,8 +458,8 @@ ImageSpec light_spec(const ImageSpec& resized, const SourceColor& color,
     spec.set_format(OIIO::TypeFloat);
     spec.channelformats.clear();
     if (unpremult == TonemapOptions::Unpremult::automatic)
-        erase_attributes(spec, "oiio:UnassociatedAlpha");
-    tag_as_light(spec, color);
+        erase_attribute(spec, "oiio:UnassociatedAlpha");
+    change_spec(spec, [&](PictureSpec& of) { tag_as_light(of, color); });
     return spec;
 }
 
@@ -502,7 +504,7 @@ ImageBuf resized_light(const ImageBuf& picture, const SourceColor& color,
 
 ImageBuf resized_picture(const ImageBuf& picture, std::string_view size,
                          const TonemapOptions& options, double max_pixels, int nthreads) {
-    const SourceColor color = source_color(picture.spec(), options.input);
+    const SourceColor color = source_color(picture_spec(picture.spec()), options.input);
     const ImageSpec target =
         light_spec(resized_spec(picture.spec(), size, max_pixels), color, options.unpremult);
     return resized_light(picture, color, options, target, nthreads);

@@ -24,6 +24,10 @@
 
 #include "image/metering_kernels.h"
 #include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/picture_description.h"
+#include "picture/pixel_access.h"
+#include "picture/source_pixels.h"
 #include "tonewright/engine.h"
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
@@ -602,18 +606,19 @@ struct SceneMeter::State {
 
 SceneMeter::SceneMeter(const OIIO::ImageSpec& spec, const MeterOptions& options, Cover cover,
                        Figures figures, int nthreads) {
-    const SourceColor source = in_units(source_color(spec, options.input), options.input_units);
+    const PictureSpec of = picture_spec(spec);
+    const SourceColor source = in_units(source_color(of, options.input), options.input_units);
     const Matrix3 to_rec709 =
         scale(rgb_to_rgb(source.primaries, kRec709), scene_scale(source, options.reference_white));
     std::optional<ReferenceEngine> decode;
     if (!source.decode.empty()) decode.emplace(source.decode);
-    ChannelLayout layout = channel_layout(spec);
+    ChannelLayout layout = channel_layout(of);
     if (options.unpremult == TonemapOptions::Unpremult::no || cover == Cover::ignored)
         layout.alpha = -1;
     Bins bins(options);
     std::vector<std::uint64_t> histogram(bins.size());
     state_ = std::make_unique<State>(
-        State{{options, figures, layout, divides_by_alpha(spec, options.unpremult),
+        State{{options, figures, layout, divides_by_alpha(of, options.unpremult),
                surface_limit(options.unpremult, 0), to_rec709 != kIdentity3, to_rec709,
                std::move(decode), std::move(bins)},
               nthreads,

@@ -10,6 +10,8 @@
 #include <new>
 
 #include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/source_pixels.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -89,7 +91,7 @@ class LightReader {
 
 ScenePlanes read_light(const OIIO::ImageBuf& src, const SimdEngine& to_light,
                        TonemapOptions::Unpremult unpremult, double exposure_stops, int nthreads) {
-    const OIIO::ImageSpec& spec = src.spec();
+    const PictureSpec spec = picture_spec(src.spec());
     const ChannelLayout layout = channel_layout(spec);
     if (spec.depth > 1) {
         throw Error(
@@ -101,7 +103,7 @@ ScenePlanes read_light(const OIIO::ImageBuf& src, const SimdEngine& to_light,
     light.width = spec.width;
     light.height = spec.height;
     light.for_rows = row_loop(nthreads);
-    const auto count = static_cast<std::size_t>(spec.image_pixels());
+    const auto count = static_cast<std::size_t>(src.spec().image_pixels());
     for (std::vector<float>& plane : light.rgb)
         plane.resize(count);
     if (layout.alpha >= 0 && unpremult != TonemapOptions::Unpremult::no) light.counts.resize(count);

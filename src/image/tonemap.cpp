@@ -27,11 +27,15 @@
 #include "base/bounded_cache.h"
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "image/color_tags.h"
-#include "image/picture_description.h"
+#include "image/converted_picture.h"
 #include "image/report_thrown.h"
 #include "image/scene_planes.h"
 #include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/color_tags.h"
+#include "picture/picture_description.h"
+#include "picture/pixel_access.h"
+#include "picture/source_pixels.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
@@ -73,7 +77,7 @@ ImageSpec result_spec(const ImageSpec& source, bool gray_becomes_color) {
     }
     spec.set_format(OIIO::TypeFloat);
     spec.channelformats.clear();
-    complete_channel_names(spec);
+    change_spec(spec, [](PictureSpec& of) { complete_channel_names(of); });
     return spec;
 }
 
@@ -589,7 +593,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
     if (dst.initialized()) check_pixel_type("destination", dst.spec().format);
 
     ChannelPlan plan;
-    const ChannelLayout layout = channel_layout(source);
+    const ChannelLayout layout = channel_layout(picture_spec(source));
     plan.gray_source = layout.is_gray;
     const int color_count = plan.gray_source ? 1 : 3;
     const int chbegin = roi.defined() ? std::max(roi.chbegin, 0) : 0;
@@ -610,7 +614,8 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
                          plan.gray_source ? with.label + " shows this gray picture in color"
                                           : std::string("the picture is in color")));
     }
-    if (layout.alpha >= 0 && divides_by_alpha(source, with.unpremult)) plan.alpha = layout.alpha;
+    if (layout.alpha >= 0 && divides_by_alpha(picture_spec(source), with.unpremult))
+        plan.alpha = layout.alpha;
     plan.surface_limit = surface_limit(with.unpremult, with.exposure_stops);
 
     const bool widens = plan.gray_source && !plan.gray_result;
@@ -699,11 +704,11 @@ void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf&
                                  std::ptrdiff_t out_stride, std::size_t count) {
         with.engine.run(in, in_stride, out, out_stride, count);
     };
-    const bool keeps_gray = channel_layout(src.spec()).is_gray && with.keeps_gray();
+    const bool keeps_gray = channel_layout(picture_spec(src.spec())).is_gray && with.keeps_gray();
     run_picture(
         {engine, keeps_gray, with.view.op.label, options.unpremult, options.exposure_stops, light},
         dst, src, roi, nthreads, progress);
-    tag_as_result_of(with.view, dst.specmod());
+    change_spec(dst.specmod(), [&](PictureSpec& spec) { tag_as_result_of(with.view, spec); });
     if (options.dither) dst.specmod().attribute("oiio:dither", 1);
 }
 
@@ -776,7 +781,7 @@ bool map_colors(ImageBuf& dst, const ImageBuf& src,
         check_source(src);
         Progress untold(nullptr, nullptr);
         run_picture({planar, false, "the LUT", unpremult}, dst, src, roi, nthreads, untold);
-        tag_as_unknown(dst.specmod());
+        change_spec(dst.specmod(), tag_as_unknown);
         return true;
     } catch (...) {
         return report_thrown(dst, "");

@@ -23,11 +23,14 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "image/batch_queue.h"
-#include "image/color_tags.h"
+#include "image/converted_picture.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
-#include "image/source_picture.h"
+#include "image/spec_conversion.h"
 #include "image/tonemap_file.h"
+#include "picture/picture_description.h"
+#include "picture/source_date.h"
+#include "picture/source_pixels.h"
 #include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 #include "tonewright/registry.h"
@@ -56,7 +59,7 @@ void add_provenance(ImageSpec& picture, const TonemapOptions& options, const std
     picture.attribute("tonewright:operator", op);
     picture.attribute("tonewright:exposure", exposure);
     // The source may be a picture that another run resized.
-    erase_attributes(picture, "tonewright:resize");
+    erase_attribute(picture, "tonewright:resize");
     if (!resize.empty()) picture.attribute("tonewright:resize", resize);
     // For native output, the name of its color may be there, and says more.
     if (options.display != kNativeOutput || !picture.find_attribute("tonewright:display"))
@@ -112,12 +115,12 @@ class FilePass {
           reader_(reader),
           writer_(writer),
           nthreads_(nthreads),
-          source_(with_color_metadata_alone(reader.spec())) {
+          source_(image_spec(with_color_metadata_alone(picture_spec(reader.spec())))) {
         ImageSpec result = result_spec(tonemapper, reader.spec());
         give_date(result, in);
         if (options.write_provenance) add_provenance(result, tonemapper.options(), resize);
         writer.open(result);
-        result_ = with_color_metadata_alone(result);
+        result_ = image_spec(with_color_metadata_alone(picture_spec(result)));
         result_.set_format(writer.row_type());
         step_ = rows_of_batch(source_.scanline_bytes() + result_.scanline_bytes(),
                               reader.row_step(), source_.height, batch_bytes);
@@ -257,7 +260,7 @@ std::string finished_warning(const ImageSpec& spec, const TonemapOptions& option
     if (!is_same_name(options.input, kAutoInput) || options.mix == 0) return {};
     const ResolvedOperator& op = options.op;
     if (!expects_a_scene(op)) return {};
-    const PictureDescription description = describe_picture(spec, options.input);
+    const PictureDescription description = describe_picture(picture_spec(spec), options.input);
     if (!is_for_display(description.color)) return {};
     const std::string name = op.op->source == "typed" ? "the formula" : op.op->id;
     return fmt::format(
@@ -274,7 +277,8 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
                          nthreads);  // reports a wrong name before it reads a large file
     PictureReader reader(in, nthreads, read);
     check_pixel_type("source", reader.spec().format);
-    (void)channel_layout(reader.spec());  // reports wrong channels before it reads them
+    (void)channel_layout(
+        picture_spec(reader.spec()));  // reports wrong channels before it reads them
     report_header(reader.spec(), tonemapper.options().input, read);
     if (read.header) read.header(reader.spec());
     if (read.warn) {
@@ -282,7 +286,8 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         if (!text.empty()) read.warn(text);
     }
     reader.convert_colors(tonemapper.options());
-    const bool turns = orientation_of(reader.spec()) != 1 && !writer.keeps_orientation();
+    const bool turns =
+        orientation_of(picture_spec(reader.spec())) != 1 && !writer.keeps_orientation();
     if (reader.spec().depth > 1 || tonemapper.needs_whole_picture() || turns) {
         ImageBuf source = reader.read_all();
         if (turns) source = upright(std::move(source));

@@ -11,8 +11,8 @@
 #include <numeric>
 #include <string_view>
 
-#include "image/format_limits.h"
 #include "image/picture_file.h"
+#include "picture/format_limits.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -6,8 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "base/strings.h"
-
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
@@ -18,8 +16,19 @@ T value_of(const PictureAttribute& attribute) {
     return value;
 }
 
-bool is_number(const PictureAttribute& attribute) {
+bool is_single(const PictureAttribute& attribute) {
     return attribute.type.aggregate == OIIO::TypeDesc::SCALAR && attribute.type.arraylen == 0;
+}
+
+char lowercase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
+
+/// The number that is all of the text.
+template <class Number>
+Number number_of(const std::string& text, Number otherwise) {
+    Number value{};
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && stop == end ? value : otherwise;
 }
 
 }  // namespace
@@ -49,6 +58,56 @@ std::size_t size_of(const OIIO::TypeDesc& type) {
     }
 }
 
+bool is_floating_point(const OIIO::TypeDesc& type) {
+    using T = OIIO::TypeDesc;
+    return type.basetype == T::HALF || type.basetype == T::FLOAT || type.basetype == T::DOUBLE;
+}
+
+const char* name_of(const OIIO::TypeDesc& type) {
+    switch (type.basetype) {
+        case OIIO::TypeDesc::NONE:
+            return "void";
+        case OIIO::TypeDesc::UINT8:
+            return "uint8";
+        case OIIO::TypeDesc::INT8:
+            return "int8";
+        case OIIO::TypeDesc::UINT16:
+            return "uint16";
+        case OIIO::TypeDesc::INT16:
+            return "int16";
+        case OIIO::TypeDesc::UINT32:
+            return "uint";
+        case OIIO::TypeDesc::INT32:
+            return "int";
+        case OIIO::TypeDesc::UINT64:
+            return "uint64";
+        case OIIO::TypeDesc::INT64:
+            return "int64";
+        case OIIO::TypeDesc::HALF:
+            return "half";
+        case OIIO::TypeDesc::FLOAT:
+            return "float";
+        case OIIO::TypeDesc::DOUBLE:
+            return "double";
+        case OIIO::TypeDesc::STRING:
+            return "string";
+        case OIIO::TypeDesc::PTR:
+            return "pointer";
+        default:
+            return "unknown";
+    }
+}
+
+bool is_equal_but_for_case(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) {
+               return lowercase(x) == lowercase(y);
+           });
+}
+
+bool starts_with_but_for_case(std::string_view text, std::string_view start) {
+    return is_equal_but_for_case(text.substr(0, start.size()), start);
+}
+
 void PictureSpec::attribute(std::string_view name, OIIO::TypeDesc type, const void* value) {
     PictureAttribute made = {std::string(name), type, {}, {}};
     if (type.basetype == OIIO::TypeDesc::STRING) {
@@ -59,7 +118,7 @@ void PictureSpec::attribute(std::string_view name, OIIO::TypeDesc type, const vo
         made.data.assign(bytes, bytes + size_of(type));
     }
     const auto old = std::find_if(attributes.begin(), attributes.end(), [&](const auto& other) {
-        return is_same_name(other.name, name);
+        return is_equal_but_for_case(other.name, name);
     });
     if (old == attributes.end()) {
         attributes.push_back(std::move(made));
@@ -82,20 +141,27 @@ void PictureSpec::attribute(std::string_view name, std::string_view value) {
 }
 
 void PictureSpec::erase_attribute(std::string_view name) {
-    std::erase_if(attributes,
-                  [&](const auto& attribute) { return is_same_name(attribute.name, name); });
+    std::erase_if(attributes, [&](const auto& attribute) {
+        return is_equal_but_for_case(attribute.name, name);
+    });
 }
 
 const PictureAttribute* PictureSpec::find_attribute(std::string_view name) const {
     const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& other) {
-        return is_same_name(other.name, name);
+        return is_equal_but_for_case(other.name, name);
     });
     return found == attributes.end() ? nullptr : &*found;
 }
 
+const PictureAttribute* PictureSpec::find_attribute(std::string_view name,
+                                                    const OIIO::TypeDesc& type) const {
+    const PictureAttribute* const found = find_attribute(name);
+    return found && found->type == type ? found : nullptr;
+}
+
 int PictureSpec::get_int_attribute(std::string_view name, int otherwise) const {
     const PictureAttribute* const found = find_attribute(name);
-    if (!found || !is_number(*found)) return otherwise;
+    if (!found || !is_single(*found)) return otherwise;
     switch (found->type.basetype) {
         case OIIO::TypeDesc::INT:
             return value_of<int>(*found);
@@ -109,12 +175,8 @@ int PictureSpec::get_int_attribute(std::string_view name, int otherwise) const {
             return value_of<signed char>(*found);
         case OIIO::TypeDesc::UINT8:
             return value_of<unsigned char>(*found);
-        case OIIO::TypeDesc::STRING: {
-            int value = otherwise;
-            const std::string& text = found->texts.front();
-            std::from_chars(text.data(), text.data() + text.size(), value);
-            return value;
-        }
+        case OIIO::TypeDesc::STRING:
+            return number_of(found->texts.front(), otherwise);
         default:
             return otherwise;
     }
@@ -122,21 +184,28 @@ int PictureSpec::get_int_attribute(std::string_view name, int otherwise) const {
 
 float PictureSpec::get_float_attribute(std::string_view name, float otherwise) const {
     const PictureAttribute* const found = find_attribute(name);
-    if (!found || !is_number(*found)) return otherwise;
+    if (!found || !is_single(*found)) return otherwise;
     switch (found->type.basetype) {
         case OIIO::TypeDesc::FLOAT:
             return value_of<float>(*found);
         case OIIO::TypeDesc::DOUBLE:
             return static_cast<float>(value_of<double>(*found));
+        case OIIO::TypeDesc::STRING:
+            return number_of(found->texts.front(), otherwise);
+        case OIIO::TypeDesc::UNKNOWN:
+        case OIIO::TypeDesc::PTR:
+            return otherwise;
         default:
-            return static_cast<float>(get_int_attribute(name, static_cast<int>(otherwise)));
+            return static_cast<float>(get_int_attribute(name));
     }
 }
 
 std::string PictureSpec::get_string_attribute(std::string_view name,
                                               std::string_view otherwise) const {
     const PictureAttribute* const found = find_attribute(name);
-    return std::string(found && !found->texts.empty() ? found->texts.front() : otherwise);
+    return std::string(found && is_single(*found) && !found->texts.empty()
+                           ? std::string_view(found->texts.front())
+                           : otherwise);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -21,15 +21,17 @@
 
 #include "base/input_file.h"
 #include "base/strings.h"
-#include "image/header_tags.h"
-#include "image/layers.h"
 #include "image/lut_picture.h"
 #include "image/picture_file.h"
 #include "image/report_thrown.h"
 #include "image/scene_meter.h"
-#include "image/source_picture.h"
+#include "image/spec_conversion.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
+#include "picture/header_tags.h"
+#include "picture/layers.h"
+#include "picture/picture_description.h"
+#include "picture/source_pixels.h"
 #include "plugin/request.h"
 #include "tonewright/lut.h"
 #include "tonewright/registry.h"
@@ -228,24 +230,26 @@ class TonemappedInput final : public ImageInput {
                 throw FileError(path_ + ": cannot read: the picture has no pixels");
             check_pixel_type("picture", source.format);
             source.channelformats.clear();  // all channels are read in the widest of them
-            complete_channel_names(source);
-            complete_header(path_, picture_->format_name(), subimage, source);
             std::vector<int> order;
-            const std::vector<Layer> layers = color_layers(source);
-            const bool has_layers = std::string_view(picture_->format_name()) == "openexr";
-            if (const Layer* layer = has_layers ? picture_layer(layers) : nullptr) {
-                order = order_of(*layer, source);
-                reorder(source, order, layer->channels.size() > 3);
-                if (std::is_sorted(order.begin(), order.end())) order.clear();
-            }
+            change_spec(source, [&](PictureSpec& spec) {
+                complete_channel_names(spec);
+                complete_header(path_, picture_->format_name(), subimage, spec);
+                const std::vector<Layer> layers = color_layers(spec);
+                const bool has_layers = std::string_view(picture_->format_name()) == "openexr";
+                if (const Layer* layer = has_layers ? picture_layer(layers) : nullptr) {
+                    order = order_of(*layer, spec);
+                    reorder(spec, order, layer->channels.size() > 3);
+                    if (std::is_sorted(order.begin(), order.end())) order.clear();
+                }
+            });
             ImageSpec result = result_spec(*tonemapper_, source);
             result.tile_width = source.tile_width;
             result.tile_height = source.tile_height;
             result.tile_depth = source.tile_depth;
             found = levels_
                         .emplace(std::pair(subimage, miplevel),
-                                 Level{with_color_metadata_alone(source), std::move(result),
-                                       std::move(order)})
+                                 Level{image_spec(with_color_metadata_alone(picture_spec(source))),
+                                       std::move(result), std::move(order)})
                         .first;
         }
         subimage_ = subimage;
@@ -327,7 +331,8 @@ class TonemappedInput final : public ImageInput {
             from = ordered.data();
         }
         const ImageBuf source(cut(level.source), from);
-        const ImageSpec spec = cut(with_color_metadata_alone(level.result));
+        const ImageSpec spec =
+            cut(image_spec(with_color_metadata_alone(picture_spec(level.result))));
         const auto row = static_cast<OIIO::stride_t>(spec.pixel_bytes()) * row_pixels;
         ImageBuf result(spec, to, static_cast<OIIO::stride_t>(spec.pixel_bytes()), row,
                         row * slice_rows);

@@ -28,8 +28,9 @@
 #include "cli/pictures/standard_streams.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
-#include "image/source_picture.h"
+#include "image/spec_conversion.h"
 #include "image/tonemap_file.h"
+#include "picture/picture_description.h"
 #include "tasks/pictures/frames.h"
 #include "tasks/pictures/input_files.h"
 #include "tasks/pictures/metering.h"
@@ -327,7 +328,7 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Ap
     const ResolvedOperator& op = options.op;
     const OIIO::ImageSpec spec =
         header ? *header : PictureReader(file.in, 1, read_options_of(given.picture)).spec();
-    const PictureDescription said = describe_picture(spec, options.input);
+    const PictureDescription said = describe_picture(picture_spec(spec), options.input);
     std::string text =
         fmt::format("apply: {} ({} x {} {}, {} by {}) -> {}: {} ({}), exposure {:+.3g}, display {}",
                     file.in, spec.width, spec.height, spec.format.c_str(), said.color.name,

@@ -12,11 +12,14 @@
 #include "base/atomic_file.h"
 #include "base/problem.h"
 #include "base/strings.h"
-#include "image/color_tags.h"
+#include "image/converted_picture.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
-#include "image/source_picture.h"
+#include "image/spec_conversion.h"
 #include "image/tonemap_file.h"
+#include "picture/color_tags.h"
+#include "picture/picture_description.h"
+#include "picture/source_pixels.h"
 #include "tasks/json.h"
 #include "tasks/pictures/compare.h"
 #include "tasks/pictures/contained.h"
@@ -148,16 +151,16 @@ void write_with_legend(const Tonemapper& tonemapper, OIIO::ImageBuf picture, con
 LutSource lut_source(OIIO::ImageBuf picture, const std::string& path, const TonemapOptions& light,
                      const ReadOptions& read, int nthreads) {
     SourceColor color = about_picture(path, [&] {
-        (void)channel_layout(picture.spec());
-        return source_color(picture.spec(), light.input);
+        (void)channel_layout(picture_spec(picture.spec()));
+        return source_color(picture_spec(picture.spec()), light.input);
     });
     std::string name = color.name;
     if (!read.resize.empty()) {
         picture = resized(picture, path, light, read, nthreads);
-        color = source_color(picture.spec(), light.input);
+        color = source_color(picture_spec(picture.spec()), light.input);
     } else if (color.convert) {
         picture = converted_picture(picture, color);
-        color = source_color(picture.spec(), kAutoInput);
+        color = source_color(picture_spec(picture.spec()), kAutoInput);
         name = color.name;
     }
     return {std::move(picture), std::move(color), std::move(name)};
@@ -178,7 +181,10 @@ void write_through_lut(const LutSource& source, const FrameFiles& file,
     };
     if (!map_colors(result, source.picture, map, request.unpremult, {}, request.nthreads))
         throw FileError(file.in + ": " + first_line(result.geterror()));
-    if (request.display) tag_as_shown_on(*request.display, result.specmod());
+    if (request.display) {
+        change_spec(result.specmod(),
+                    [&](PictureSpec& spec) { tag_as_shown_on(*request.display, spec); });
+    }
     if (request.write.write_provenance) {
         const std::string size = request.resize.empty() ? "" : ", resize " + request.resize;
         result.specmod().attribute(

@@ -18,7 +18,9 @@
 #include "image/contact_sheet.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
-#include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/picture_description.h"
+#include "picture/source_pixels.h"
 #include "tasks/pictures/read_picture.h"
 #include "tonewright/contact_sheet.h"
 #include "tonewright/engine.h"
@@ -219,8 +221,8 @@ void Comparison::write_split(const OIIO::ImageBuf& picture) const {
 void Comparison::write(OIIO::ImageBuf picture) {
     TonemapOptions& light = request_.tonemap;
     const SourceColor source = about_picture(request_.in, [&] {
-        (void)channel_layout(picture.spec());
-        return in_units(source_color(picture.spec(), light.input), light.input_units);
+        (void)channel_layout(picture_spec(picture.spec()));
+        return in_units(source_color(picture_spec(picture.spec()), light.input), light.input_units);
     });
     const std::string remark =
         fmt::format("{}, {}, shown on sRGB", exposure_text(light.exposure_stops), title_of(source));

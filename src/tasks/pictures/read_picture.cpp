@@ -10,9 +10,11 @@
 
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "image/converted_picture.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
-#include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/picture_description.h"
 #include "pipeline/exposure.h"
 #include "tonewright/engine.h"
 
@@ -31,8 +33,8 @@ OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture, const SourceColor&
                                double reference_white, const std::string& path) {
     if (source.convert) {
         const OIIO::ImageBuf light = converted_picture(picture, source);
-        return to_rec709_light(light, source_color(light.spec(), kAutoInput), reference_white,
-                               path);
+        return to_rec709_light(light, source_color(picture_spec(light.spec()), kAutoInput),
+                               reference_white, path);
     }
     Pipeline stages = exposed_stages(source.decode, scene_scale(source, reference_white));
     stages.emplace_back(MatrixStage{rgb_to_rgb(source.primaries, kRec709)});
@@ -52,7 +54,7 @@ std::vector<float> light_pixels(const OIIO::ImageBuf& picture, const std::string
             fmt::format("{}: it has {} channels; expected 3", path, picture.nchannels()));
     }
     const SourceColor source =
-        about_picture(path, [&] { return source_color(picture.spec(), kAutoInput); });
+        about_picture(path, [&] { return source_color(picture_spec(picture.spec()), kAutoInput); });
     const OIIO::ImageBuf image = to_rec709_light(picture, source, kUnitLuminance, path);
     const int channels = image.nchannels();
     const auto& spec = image.spec();
@@ -77,7 +79,7 @@ PictureInfo read_picture_info(const std::string& path, ReadOptions read, const s
     read.note = [&](const std::string& text) { info.choices.push_back(text); };
     about_picture(path, [&] {
         info.spec = PictureReader(path, 1, read).spec();
-        info.said = describe_picture(info.spec, input);
+        info.said = describe_picture(picture_spec(info.spec), input);
     });
     info.said.ignored.insert(info.said.ignored.begin(), warnings.begin(), warnings.end());
     return info;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/picture_description.h"
+#include "picture/picture_description.h"
 #include "tasks/json.h"
 #include "tonewright/image_io.h"
 #include "tonewright/tonemap.h"

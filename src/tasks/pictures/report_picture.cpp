@@ -14,7 +14,10 @@
 #include "image/comparison.h"
 #include "image/contact_sheet.h"
 #include "image/picture_file.h"
-#include "image/source_picture.h"
+#include "image/spec_conversion.h"
+#include "picture/picture_description.h"
+#include "picture/source_date.h"
+#include "picture/source_pixels.h"
 #include "tasks/pictures/read_picture.h"
 #include "tonewright/chart.h"
 #include "tonewright/image_io.h"
@@ -47,9 +50,10 @@ OIIO::ImageBuf light_of(const ReportPictureRequest& request) {
         return make_chart(width, width * 9 / 16);
     }
     const SourceColor source = about_picture(request.path, [&] {
-        (void)channel_layout(picture.spec());
+        (void)channel_layout(picture_spec(picture.spec()));
         check_shown_window(picture);
-        return in_units(source_color(picture.spec(), kAutoInput), request.input_units);
+        return in_units(source_color(picture_spec(picture.spec()), kAutoInput),
+                        request.input_units);
     });
     return with_memory_for(request.path, [&] {
         const OIIO::ImageBuf light =

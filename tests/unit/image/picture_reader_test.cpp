@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <latch>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "image/picture_file.h"
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
 #include "tonewright/registry.h"
@@ -207,6 +213,60 @@ TEST_F(ReadPicture, ReadsAChangedFileAgain) {
         // Nor does the shared cache serve the old one.
         EXPECT_EQ(ImageBuf(file("a.exr")).getchannel(1, 1, 0, 0), value);
     }
+}
+
+/// A profile of no colors, with private tags (ICC.1:2022, 7.3), whose names no other profile has.
+std::string profile_with_tags(int count, int first) {
+    const auto u32 = [](std::size_t value) {
+        std::string bytes;
+        for (const int shift : {24, 16, 8, 0})
+            bytes += static_cast<char>(value >> shift & 255U);
+        return bytes;
+    };
+    const std::size_t table = 132 + 12 * static_cast<std::size_t>(count);
+    std::string profile(128, '\0');
+    profile.replace(0, 4, u32(table + 12));
+    profile.replace(8, 4, u32(0x04300000));
+    profile.replace(12, 12, "mntrRGB XYZ ");
+    profile.replace(36, 4, "acsp");
+    profile += u32(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i)
+        profile += fmt::format("{:04x}", first + i) + u32(table) + u32(12);
+    return profile + std::string("text\0\0\0\0tag", 12);
+}
+
+// OpenImageIO 2.4 notes names of tags that it does not know in a static table, while it decodes a
+// profile: without our lock, most runs end in a crash.
+TEST(PictureReader, ThreadsOpenPicturesWithProfiles) {
+    const Folder folder;
+    constexpr int kThreads = 4;
+    constexpr int kFiles = 40;  // for each thread
+    constexpr int kTags = 100;
+    const auto name = [&](int i) { return folder / (std::to_string(i) + ".tif"); };
+    for (int i = 0; i < kThreads * kFiles; ++i) {
+        const std::string profile = profile_with_tags(kTags, kTags * i);
+        OIIO::ImageSpec spec(4, 3, 3, OIIO::TypeDesc::UINT8);
+        spec.attribute("ICCProfile",
+                       OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
+                       profile.data());
+        OIIO::ImageBuf picture(spec);
+        OIIO::ImageBufAlgo::zero(picture);
+        ASSERT_TRUE(picture.write(name(i)));
+    }
+    std::vector<std::jthread> threads;
+    std::latch start(kThreads);
+    std::atomic<int> read = 0;
+    for (int t = 0; t < kThreads; ++t) {
+        threads.emplace_back([&, t] {
+            start.arrive_and_wait();
+            for (int i = t * kFiles; i < (t + 1) * kFiles; ++i) {
+                const PictureReader reader(name(i), 1);
+                if (reader.spec().find_attribute("ICCProfile")) ++read;
+            }
+        });
+    }
+    threads.clear();
+    EXPECT_EQ(read, kThreads * kFiles);
 }
 
 }  // namespace

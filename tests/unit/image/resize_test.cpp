@@ -8,8 +8,10 @@
 #include <tuple>
 #include <vector>
 
-#include "image/picture_description.h"
 #include "image/picture_file.h"
+#include "image/spec_conversion.h"
+#include "picture/picture_description.h"
+#include "picture/picture_error.h"
 #include "unit/folder.h"
 #include "unit/image/pictures.h"
 
@@ -63,14 +65,14 @@ TEST(Resize, LightKeepsItsColor) {
     EXPECT_EQ(light.format, OIIO::TypeFloat);
     EXPECT_EQ(light.get_int_attribute("oiio:UnassociatedAlpha", 0), 0);
     for (const char* input : {"auto", "logc3"}) {
-        const SourceColor found = source_color(light, input);
+        const SourceColor found = source_color(picture_spec(light), input);
         EXPECT_TRUE(found.primaries == color.primaries);
         EXPECT_TRUE(found.is_absolute);
         EXPECT_TRUE(found.decode.empty());
         EXPECT_NE(found.name, color.name);
     }
     // Rows have the color of their picture.
-    EXPECT_TRUE(source_color(with_color_metadata_alone(light), "auto").is_absolute);
+    EXPECT_TRUE(source_color(with_color_metadata_alone(picture_spec(light)), "auto").is_absolute);
 }
 
 TEST(Resize, RowsAreThoseOfTheWholePicture) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "image/spec_conversion.h"
+#include "picture/picture_description.h"
 #include "tasks/pictures/report_picture.h"
 #include "tonewright/registry.h"
 #include "unit/errors.h"
@@ -29,8 +31,9 @@ TEST_F(PicturesAsLight, TellsWhatTheHeaderSays) {
 TEST_F(PicturesAsLight, LightIsSceneLinearRec709) {
     write_image_atomically(shown_on("srgb"), file("a.png"));
     const OIIO::ImageBuf picture = read_picture(file("a.png"), {});
-    const OIIO::ImageBuf light = to_rec709_light(picture, source_color(picture.spec(), kAutoInput),
-                                                 kUnitLuminance, file("a.png"));
+    const OIIO::ImageBuf light =
+        to_rec709_light(picture, source_color(picture_spec(picture.spec()), kAutoInput),
+                        kUnitLuminance, file("a.png"));
     EXPECT_EQ(light.spec().format, OIIO::TypeFloat);
     std::vector<float> rgb(24 * 17 * 3);
     light.get_pixels(light.roi(), OIIO::TypeFloat, rgb.data());

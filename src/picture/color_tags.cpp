@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/color_tags.h"
-#include "base/format_number.h"
-#include "tonewright/format_color.h"
+#include "picture/color_tags.h"
 
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +9,9 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+
+#include "base/format_number.h"
+#include "tonewright/format_color.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -65,12 +65,12 @@ double power_of(std::string_view name) {
 }
 
 /// `chromaticities`, or those of Rec.709 if there are none.
-Primaries primaries_of(const OIIO::ImageSpec& spec) {
-    const OIIO::ParamValue* xy =
+Primaries primaries_of(const PictureSpec& spec) {
+    const PictureAttribute* xy =
         spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
     if (!xy) return kRec709;
     std::array<double, 8> p{};
-    std::copy_n(static_cast<const float*>(xy->data()), p.size(), p.begin());
+    std::copy_n(xy->numbers<float>(), p.size(), p.begin());
     return {"chromaticities", {p[0], p[1]}, {p[2], p[3]}, {p[4], p[5]}, {p[6], p[7]}};
 }
 
@@ -125,7 +125,7 @@ std::string interop_id_of(const Claim& claim) {
     return {};
 }
 
-void tag(const Claim& claim, OIIO::ImageSpec& spec) {
+void tag(const Claim& claim, PictureSpec& spec) {
     tag_as_unknown(spec);
     if (!claim.color_space.empty()) spec.attribute("oiio:ColorSpace", claim.color_space);
     // OpenImageIO drops oiio:ColorSpace where it writes OpenEXR.
@@ -147,20 +147,16 @@ void tag(const Claim& claim, OIIO::ImageSpec& spec) {
 
 }  // namespace
 
-void erase_attributes(OIIO::ImageSpec& spec, OIIO::string_view name) {
-    const bool begins_so = name.back() == '*';
+void erase_attributes(PictureSpec& spec, std::string_view name) {
+    const bool begins_so = name.ends_with('*');
     if (begins_so) name.remove_suffix(1);
-    auto& all = spec.extra_attribs;
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [&](const OIIO::ParamValue& attribute) {
-                                 return begins_so
-                                            ? OIIO::Strutil::istarts_with(attribute.name(), name)
-                                            : OIIO::Strutil::iequals(attribute.name(), name);
-                             }),
-              all.end());
+    std::erase_if(spec.attributes, [&](const PictureAttribute& attribute) {
+        return begins_so ? starts_with_but_for_case(attribute.name, name)
+                         : is_equal_but_for_case(attribute.name, name);
+    });
 }
 
-void tag_as_unknown(OIIO::ImageSpec& spec) {
+void tag_as_unknown(PictureSpec& spec) {
     // Each of these attributes described the source. If a writer prefers one of them to
     // oiio:ColorSpace (as DPX does), the file would be wrong. oiio:Gamma repeats the name
     // "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by a power of alpha. A gain map
@@ -203,16 +199,16 @@ void tag_as_unknown(OIIO::ImageSpec& spec) {
     }
 }
 
-void tag_as_result_of(const View& view, OIIO::ImageSpec& spec) {
+void tag_as_result_of(const View& view, PictureSpec& spec) {
     tag(view.display == kNativeOutput ? claim_of_operator(view.op) : claim_of_display(view.display),
         spec);
 }
 
-void tag_as_shown_on(std::string_view display, OIIO::ImageSpec& spec) {
+void tag_as_shown_on(std::string_view display, PictureSpec& spec) {
     tag(claim_of_display(display), spec);
 }
 
-std::optional<TaggedColor> tagged_color(const OIIO::ImageSpec& spec) {
+std::optional<TaggedColor> tagged_color(const PictureSpec& spec) {
     const std::string name = spec.get_string_attribute("oiio:ColorSpace");
     if (name == "Linear") return TaggedColor{"linear light", primaries_of(spec), IccCurve{}};
     if (name == "sRGB") return TaggedColor{"sRGB", primaries_of(spec), IccCurve{kSrgbPower, true}};
@@ -236,7 +232,7 @@ std::optional<TaggedColor> tagged_color(const OIIO::ImageSpec& spec) {
     return {};
 }
 
-ColorDescription describe_color(const OIIO::ImageSpec& spec, std::string_view format) {
+ColorDescription describe_color(const PictureSpec& spec, std::string_view format) {
     const FormatColor* row = find_format_color(format);
     const std::optional<TaggedColor> color = tagged_color(spec);
     // The rest keep the attributes themselves.

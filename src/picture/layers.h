@@ -3,14 +3,12 @@
 // Layers of OpenEXR files: groups of channels with a common name, "ViewLayer.Combined.R".
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
 #include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tonewright/version.h"
+#include "picture/picture_spec.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -24,7 +22,7 @@ struct Layer {
 
 /// The layers in color, in the order of the file.
 /// Names end in R, G, B; r, g, b; or red, green, blue, after a `.` or nothing.
-[[nodiscard]] TONEWRIGHT_API std::vector<Layer> color_layers(const OIIO::ImageSpec& spec);
+[[nodiscard]] TONEWRIGHT_API std::vector<Layer> color_layers(const PictureSpec& spec);
 
 /// True for names of layers that hold data and no picture: ambient occlusion, depth, normals,
 /// positions, motion, cryptomattes, masks, object indices, UV coordinates.
@@ -41,14 +39,12 @@ struct Layer {
                                                      std::string_view name);
 
 /// Channels with those of a layer first, and all others in their order.
-[[nodiscard]] TONEWRIGHT_API std::vector<int> order_of(const Layer& layer,
-                                                       const OIIO::ImageSpec& spec);
+[[nodiscard]] TONEWRIGHT_API std::vector<int> order_of(const Layer& layer, const PictureSpec& spec);
 /// The names and special channels of a spec in another order. Red, green, blue and alpha of a layer
 /// without a name get capital letters, which other programs look for.
 /// @param channels   that stay, in their new order
 /// @param has_alpha  the fourth is alpha; else none of the first is
-TONEWRIGHT_API void reorder(OIIO::ImageSpec& spec, const std::vector<int>& channels,
-                            bool has_alpha);
+TONEWRIGHT_API void reorder(PictureSpec& spec, const std::vector<int>& channels, bool has_alpha);
 /// Pixels in that order. `from` and `to` do not overlap.
 /// @param stored  channels of `from`
 /// @param bytes   of a sample

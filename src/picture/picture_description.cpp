@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/picture_description.h"
+#include "picture/picture_description.h"
 
-#include <OpenImageIO/imagebufalgo.h>
-#include <OpenImageIO/imagebufalgo_util.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,10 +11,9 @@
 
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "image/color_tags.h"
-#include "image/header_tags.h"
-#include "image/source_picture.h"
 #include "lut/icc_source.h"
+#include "picture/color_tags.h"
+#include "picture/header_tags.h"
 #include "tonewright/engine.h"
 #include "tonewright/format_color.h"
 #include "tonewright/source_color.h"
@@ -24,8 +21,6 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-using OIIO::ImageSpec;
-using OIIO::ParamValue;
 using OIIO::TypeDesc;
 
 /// A header that states a color, and what the color is.
@@ -38,9 +33,8 @@ using Finding = std::optional<Found>;
 /// Names that state no color.
 bool is_no_name(std::string_view name) {
     constexpr std::array kNone = {"", "scene_linear", "unknown", "raw", "data"};
-    return std::any_of(kNone.begin(), kNone.end(), [&](const char* none) {
-        return OIIO::Strutil::iequals(OIIO::string_view(name), none);
-    });
+    return std::any_of(kNone.begin(), kNone.end(),
+                       [&](const char* none) { return is_equal_but_for_case(name, none); });
 }
 
 bool is_near(const Primaries& a, const Primaries& b, double tolerance) {
@@ -51,7 +45,7 @@ bool is_near(const Primaries& a, const Primaries& b, double tolerance) {
            near(a.whitepoint, b.whitepoint);
 }
 
-const ParamValue* eight_floats(const ImageSpec& spec, const char* name) {
+const PictureAttribute* eight_floats(const PictureSpec& spec, const char* name) {
     return spec.find_attribute(name, TypeDesc(TypeDesc::FLOAT, 8));
 }
 
@@ -59,8 +53,8 @@ const ParamValue* eight_floats(const ImageSpec& spec, const char* name) {
 /// explain the difference.
 /// @param digits  the last digit that the format has
 /// @throws PictureError  they give no colors
-Primaries primaries_of(const ParamValue& value, double digits, std::string& name) {
-    const auto* const floats = static_cast<const float*>(value.data());
+Primaries primaries_of(const PictureAttribute& value, double digits, std::string& name) {
+    const auto* const floats = value.numbers<float>();
     std::array<double, 8> xy{};
     std::copy_n(floats, xy.size(), xy.begin());
     const Primaries primaries = {
@@ -102,10 +96,10 @@ SourceColor named_color(const char* attribute, const std::string& name) {
 
 // The headers, one function each. ------------------------------------------------------------
 
-Finding by_cicp(const ImageSpec& spec) {
-    const ParamValue* value = spec.find_attribute(kCicpTag, TypeDesc(TypeDesc::INT, 4));
+Finding by_cicp(const PictureSpec& spec) {
+    const PictureAttribute* value = spec.find_attribute(kCicpTag, TypeDesc(TypeDesc::INT, 4));
     if (!value) return std::nullopt;
-    const auto* points = static_cast<const int*>(value->data());
+    const auto* points = value->numbers<int>();
     constexpr int kUnspecified = 2;
     // nclx with nothing but a matrix says how to decode YCbCr, and no color.
     if (points[0] == kUnspecified && points[1] == kUnspecified) return std::nullopt;
@@ -125,8 +119,8 @@ Finding by_cicp(const ImageSpec& spec) {
     if (format == "png" && points[3] == 0) {
         // W3C PNG, 11.3.2.6: a video full range flag of 0 is narrow range, whose codes of 8 bits
         // are 16 to 235, and 2^(n-8) times that with n bits.
-        const int bits =
-            spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+        const int bits = spec.get_int_attribute("oiio:BitsPerSample",
+                                                static_cast<int>(8 * size_of(spec.format)));
         const double scale_of = std::exp2(bits - 8) / (std::exp2(bits) - 1);
         const Expr x = Expr::input();
         const Expr full = (x - 16 * scale_of) / (219 * scale_of);
@@ -136,10 +130,10 @@ Finding by_cicp(const ImageSpec& spec) {
     return Found{std::move(*color), rule};
 }
 
-Finding by_icc(const ImageSpec& spec) {
-    const ParamValue* value = spec.find_attribute("ICCProfile");
-    if (!value || value->type().basetype != TypeDesc::UINT8) return std::nullopt;
-    const std::string_view bytes(static_cast<const char*>(value->data()), value->datasize());
+Finding by_icc(const PictureSpec& spec) {
+    const PictureAttribute* value = spec.find_attribute("ICCProfile");
+    if (!value || value->type.basetype != TypeDesc::UINT8) return std::nullopt;
+    const std::string_view bytes(value->numbers<char>(), value->data.size());
     IccSource icc;
     try {
         icc = color_of_icc(bytes, spec.nchannels < 3 ? 1 : 3, "the picture");
@@ -156,15 +150,15 @@ Finding by_icc(const ImageSpec& spec) {
                  is_named ? fmt::format("ICC profile {}", icc.description) : "ICC profile"};
 }
 
-Finding by_srgb_chunk(const ImageSpec& spec) {
+Finding by_srgb_chunk(const PictureSpec& spec) {
     if (!spec.find_attribute(file_tag::kSrgb)) return std::nullopt;
     return Found{find_source_color("sRGB"), "sRGB chunk"};
 }
 
 /// The power and the primaries of PNG, TIFF and BMP.
-Finding by_gamma(const ImageSpec& spec) {
+Finding by_gamma(const PictureSpec& spec) {
     const float gamma = spec.get_float_attribute(file_tag::kGamma, 0);
-    const ParamValue* xy = eight_floats(spec, file_tag::kPrimaries);
+    const PictureAttribute* xy = eight_floats(spec, file_tag::kPrimaries);
     if (!(gamma > 0) && !xy) return std::nullopt;
     std::string space = "lin_rec709";
     constexpr double kDigits = 2e-5;  // PNG counts hundred-thousandths
@@ -175,7 +169,7 @@ Finding by_gamma(const ImageSpec& spec) {
                              (xy ? (is_png ? "cHRM" : "primaries") : "");
     const Expr x = Expr::input();
     if (!(gamma > 0)) {
-        if (spec.format.is_floating_point()) return Found{{space, primaries}, rule};
+        if (is_floating_point(spec.format)) return Found{{space, primaries}, rule};
         SourceColor color = find_source_color("sRGB");
         if (primaries == kRec709) return Found{color, rule};
         return Found{{"sRGB curve, " + space, primaries, color.decode}, rule};
@@ -194,14 +188,14 @@ Finding by_gamma(const ImageSpec& spec) {
     return Found{{fmt::format("{}, {}", color.name, space), primaries, color.decode}, rule};
 }
 
-Finding by_interop_id(const ImageSpec& spec) {
+Finding by_interop_id(const PictureSpec& spec) {
     const std::string name = spec.get_string_attribute("colorInteropID");
     if (is_no_name(name)) return std::nullopt;
     return Found{named_color("colorInteropID", name), "colorInteropID"};
 }
 
 /// Tonewright's own tag, unless another program has written the file since.
-Finding by_own_tag(const ImageSpec& spec) {
+Finding by_own_tag(const PictureSpec& spec) {
     const std::string software = spec.get_string_attribute("Software");
     const bool is_own = software.empty() || software.starts_with("Tonewright ");
     if (!is_own) return std::nullopt;
@@ -224,14 +218,14 @@ Finding by_own_tag(const ImageSpec& spec) {
     }
 }
 
-Finding by_aces_flag(const ImageSpec& spec) {
+Finding by_aces_flag(const PictureSpec& spec) {
     if (spec.get_int_attribute("acesImageContainerFlag", 0) != 1) return std::nullopt;
     return Found{find_source_color("lin_ap0"), "acesImageContainerFlag"};
 }
 
 /// Linear light of stated primaries.
-Finding by_chromaticities(const ImageSpec& spec) {
-    const ParamValue* xy = eight_floats(spec, "chromaticities");
+Finding by_chromaticities(const PictureSpec& spec) {
+    const PictureAttribute* xy = eight_floats(spec, "chromaticities");
     if (!xy) return std::nullopt;
     const bool is_text = spec.get_string_attribute(file_tag::kFormat) == "hdr";
     std::string space;
@@ -241,7 +235,7 @@ Finding by_chromaticities(const ImageSpec& spec) {
 }
 
 /// JEITA CP-3451 (Exif 2.3), 4.6.5 and annex: 1 is sRGB; "R03" is DCF's optional space, Adobe RGB.
-Finding by_exif(const ImageSpec& spec) {
+Finding by_exif(const PictureSpec& spec) {
     const int space = spec.get_int_attribute("Exif:ColorSpace", 0);
     const std::string index = spec.get_string_attribute("Exif:InteroperabilityIndex");
     if (index == "R03" && space != 1) {
@@ -256,7 +250,7 @@ Finding by_exif(const ImageSpec& spec) {
 }
 
 /// The name that OpenImageIO gives, unless it is what its reader assumes for every file.
-Finding by_oiio_name(const ImageSpec& spec) {
+Finding by_oiio_name(const PictureSpec& spec) {
     const std::string name = spec.get_string_attribute("oiio:ColorSpace");
     // OpenImageIO calls every PNG without a tag sRGB; other names are those of a text chunk.
     const bool is_png = spec.get_string_attribute(file_tag::kFormat) == "png";
@@ -279,7 +273,7 @@ constexpr std::array kDpxVideo = {
     DpxVideo{"PAL composite video", 5},
 };
 
-Finding by_dpx_transfer(const ImageSpec& spec) {
+Finding by_dpx_transfer(const PictureSpec& spec) {
     const std::string transfer = spec.get_string_attribute("dpx:Transfer");
     const std::string rule = "dpx:Transfer " + transfer;
     if (transfer == "Printing density" || transfer == "Logarithmic")
@@ -292,12 +286,12 @@ Finding by_dpx_transfer(const ImageSpec& spec) {
     }
     // A power that the file states.
     const std::string name = spec.get_string_attribute("oiio:ColorSpace");
-    if (OIIO::Strutil::istarts_with(name, "gamma"))
+    if (starts_with_but_for_case(name, "gamma"))
         return Found{named_color("oiio:ColorSpace", name), "gamma of the header"};
     return std::nullopt;
 }
 
-using Rule = Finding (*)(const ImageSpec&);
+using Rule = Finding (*)(const PictureSpec&);
 
 /// The order in which the headers of a format count.
 std::vector<Rule> rules_of(std::string_view format) {
@@ -322,10 +316,10 @@ std::vector<Rule> rules_of(std::string_view format) {
 }
 
 /// The color of files of the format if their header says nothing.
-Found default_of(const ImageSpec& spec, std::string_view format) {
+Found default_of(const PictureSpec& spec, std::string_view format) {
     const FormatColor* row =
         find_format_color(format, spec.get_string_attribute(file_tag::kExtension));
-    const bool is_float = spec.format.is_floating_point();
+    const bool is_float = is_floating_point(spec.format);
     const std::string space(!row ? "lin_rec709" : is_float ? row->float_space : row->integer_space);
     // The config's name of the same curve.
     const bool is_srgb = space == "sRGB - Texture";
@@ -339,7 +333,7 @@ Found default_of(const ImageSpec& spec, std::string_view format) {
 }
 
 /// Names of other fields of the same header that say something else.
-void add_contradictions(std::vector<std::string>& ignored, const ImageSpec& spec,
+void add_contradictions(std::vector<std::string>& ignored, const PictureSpec& spec,
                         const std::vector<Rule>& rules, const Found& chosen) {
     // A few saturated colors show whether two descriptions differ.
     constexpr std::array<std::array<double, 3>, 3> kCodes = {
@@ -389,7 +383,7 @@ void add_contradictions(std::vector<std::string>& ignored, const ImageSpec& spec
 }
 
 /// Empty for a picture in memory, also for one whose pixels were converted since it was read.
-std::string format_of(const ImageSpec& spec) {
+std::string format_of(const PictureSpec& spec) {
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
     if (space != std::string(spec.get_string_attribute(file_tag::kColorSpace))) return {};
     return spec.get_string_attribute(file_tag::kFormat);
@@ -408,42 +402,7 @@ std::string transfer_of(const SourceColor& color) {
     return color.name;
 }
 
-/// ImageBufAlgo::transpose() with the pixel type of its source.
-OIIO::ImageBuf transposed(const OIIO::ImageBuf& picture) {
-    ImageSpec spec = picture.spec();
-    std::swap(spec.x, spec.y);
-    std::swap(spec.width, spec.height);
-    std::swap(spec.full_x, spec.full_y);
-    std::swap(spec.full_width, spec.full_height);
-    OIIO::ImageBuf result(spec);
-    OIIO::ImageBufAlgo::transpose(result, picture);
-    return result;
-}
-
-/// ImageBufAlgo::reorient() of OpenImageIO 2.4 turns 5 and 7 by 180 degrees too much.
-OIIO::ImageBuf turned_by(int orientation, const OIIO::ImageBuf& picture) {
-    namespace iba = OIIO::ImageBufAlgo;
-    switch (orientation) {  // JEITA CP-3451, 4.6.4: where the first row and column are
-        case 2:
-            return iba::flop(picture);
-        case 3:
-            return iba::rotate180(picture);
-        case 4:
-            return iba::flip(picture);
-        case 5:
-            return transposed(picture);
-        case 6:
-            return iba::rotate90(picture);
-        case 7:
-            return iba::rotate180(transposed(picture));
-        case 8:
-            return iba::rotate270(picture);
-        default:
-            return picture;
-    }
-}
-
-std::string alpha_kind(const ImageSpec& spec) {
+std::string alpha_kind(const PictureSpec& spec) {
     if (spec.alpha_channel < 0 || spec.alpha_channel >= spec.nchannels) return "none";
     return spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 ? "straight" : "associated";
 }
@@ -475,11 +434,11 @@ constexpr std::array kMetadata = {"oiio:UnassociatedAlpha",
 constexpr int kLightNumbers = 10;
 
 /// The light that tag_as_light() stored.
-Finding tagged_light(const ImageSpec& spec) {
-    const ParamValue* value =
+Finding tagged_light(const PictureSpec& spec) {
+    const PictureAttribute* value =
         spec.find_attribute(file_tag::kLightColor, TypeDesc(TypeDesc::DOUBLE, kLightNumbers));
     if (!value) return {};
-    const auto* n = static_cast<const double*>(value->data());
+    const auto* n = value->numbers<double>();
     SourceColor color{spec.get_string_attribute(file_tag::kLight),
                       {"", {n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}}};
     color.is_absolute = n[8] != 0;
@@ -487,7 +446,7 @@ Finding tagged_light(const ImageSpec& spec) {
     return Found{std::move(color), "resized"};
 }
 
-Found color_of(const ImageSpec& spec, std::string_view input, std::vector<std::string>* ignored) {
+Found color_of(const PictureSpec& spec, std::string_view input, std::vector<std::string>* ignored) {
     if (Finding light = tagged_light(spec)) return std::move(*light);
     if (!is_same_name(input, kAutoInput)) return {find_source_color(input), "<<input>>"};
     if (const std::string why = spec.get_string_attribute(file_tag::kImpossible); !why.empty())
@@ -505,7 +464,7 @@ Found color_of(const ImageSpec& spec, std::string_view input, std::vector<std::s
 
 }  // namespace
 
-PictureDescription describe_picture(const ImageSpec& spec, std::string_view input) {
+PictureDescription describe_picture(const PictureSpec& spec, std::string_view input) {
     PictureDescription description;
     description.ignored = ignored_of(spec);
     Found found = color_of(spec, input, &description.ignored);
@@ -520,20 +479,18 @@ PictureDescription describe_picture(const ImageSpec& spec, std::string_view inpu
     return description;
 }
 
-SourceColor source_color(const ImageSpec& spec, std::string_view input) {
+SourceColor source_color(const PictureSpec& spec, std::string_view input) {
     return color_of(spec, input, nullptr).color;
 }
 
-ImageSpec described_spec(const OIIO::ImageBuf& picture) {
-    ImageSpec spec = picture.spec();
-    const std::string format(picture.file_format_name());
+PictureSpec described_spec(PictureSpec spec, std::string_view format) {
     if (spec.find_attribute(file_tag::kFormat) || format.empty()) return spec;
     // OpenImageIO has read it. The name is what its reader gives, or a program has set another.
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
     constexpr std::array kReaders = {"",       "sRGB",   "srgb_rec709_scene", "Linear",
                                      "linear", "Rec709", "lin_rec709",        "lin_rec709_scene"};
     const bool is_linear =
-        OIIO::Strutil::iequals(space, "linear") || OIIO::Strutil::istarts_with(space, "lin_rec709");
+        is_equal_but_for_case(space, "linear") || starts_with_but_for_case(space, "lin_rec709");
     const FormatColor* row = find_format_color(format);
     const bool holds_light = row && row->meaning == FormatMeaning::linear;
     if ((is_linear && !holds_light) ||
@@ -544,19 +501,19 @@ ImageSpec described_spec(const OIIO::ImageBuf& picture) {
     return spec;
 }
 
-ImageSpec with_color_metadata_alone(const ImageSpec& spec) {
-    ImageSpec result = spec;
-    result.extra_attribs.clear();
+PictureSpec with_color_metadata_alone(const PictureSpec& spec) {
+    PictureSpec result;
+    copy_structure(spec, result);
     for (const char* name : kMetadata) {
-        if (const ParamValue* value = spec.find_attribute(name))
-            result.extra_attribs.push_back(*value);
+        if (const PictureAttribute* value = spec.find_attribute(name))
+            result.attributes.push_back(*value);
     }
     return result;
 }
 
-ImageSpec converted_spec(const ImageSpec& spec, const SourceColor& color) {
-    ImageSpec result = spec;
-    result.set_format(OIIO::TypeFloat);
+PictureSpec converted_spec(const PictureSpec& spec, const SourceColor& color) {
+    PictureSpec result = spec;
+    result.format = OIIO::TypeFloat;
     result.channelformats.clear();
     tag_as_unknown(result);
     result.attribute("oiio:ColorSpace", "Linear");
@@ -572,39 +529,7 @@ ImageSpec converted_spec(const ImageSpec& spec, const SourceColor& color) {
     return result;
 }
 
-OIIO::ImageBuf converted_picture(const OIIO::ImageBuf& picture, const SourceColor& color) {
-    const ImageSpec& spec = picture.spec();
-    const bool is_gray = channel_layout(spec).is_gray;
-    const bool divides =
-        spec.alpha_channel >= 0 && divides_by_alpha(spec, TonemapOptions::Unpremult::automatic);
-    OIIO::ImageBuf result = picture.copy(OIIO::TypeFloat);
-    if (!result.localpixels()) throw PictureError(first_line(result.geterror()));
-    if (divides) OIIO::ImageBufAlgo::unpremult(result, result);
-    const auto channels = static_cast<std::size_t>(result.nchannels());
-    OIIO::ImageBufAlgo::parallel_image(result.roi(), [&](OIIO::ROI part) {
-        std::vector<float> rgb(3 * static_cast<std::size_t>(part.width()));
-        for (int z = part.zbegin; z < part.zend; ++z) {
-            for (int y = part.ybegin; y < part.yend; ++y) {
-                auto* row = static_cast<float*>(result.pixeladdr(part.xbegin, y, z));
-                const std::size_t n = rgb.size() / 3;
-                for (std::size_t i = 0; i < n; ++i) {
-                    for (std::size_t c = 0; c < 3; ++c)
-                        rgb[3 * i + c] = row[i * channels + (is_gray ? 0 : c)];
-                }
-                color.convert(rgb.data(), rgb.data(), n);
-                for (std::size_t i = 0; i < n; ++i) {
-                    for (std::size_t c = 0; c < (is_gray ? 1U : 3U); ++c)
-                        row[i * channels + c] = rgb[3 * i + (is_gray ? 1 : c)];
-                }
-            }
-        }
-    });
-    if (divides) OIIO::ImageBufAlgo::premult(result, result);
-    result.specmod().extra_attribs = converted_spec(spec, color).extra_attribs;
-    return result;
-}
-
-void tag_as_light(ImageSpec& spec, const SourceColor& color) {
+void tag_as_light(PictureSpec& spec, const SourceColor& color) {
     const Primaries& p = color.primaries;
     const std::array<double, kLightNumbers> numbers = {
         p.red.x,        p.red.y,        p.green.x,
@@ -616,27 +541,9 @@ void tag_as_light(ImageSpec& spec, const SourceColor& color) {
                    numbers.data());
 }
 
-int orientation_of(const ImageSpec& spec) {
+int orientation_of(const PictureSpec& spec) {
     const int orientation = spec.get_int_attribute("Orientation", 1);
     return orientation >= 1 && orientation <= 8 ? orientation : 1;
-}
-
-OIIO::ImageBuf upright(OIIO::ImageBuf picture) {
-    if (orientation_of(picture.spec()) == 1) return picture;
-    OIIO::ImageBuf turned = turned_by(orientation_of(picture.spec()), picture);
-    if (turned.has_error() || !turned.localpixels()) {
-        (void)turned.geterror();
-        throw std::bad_alloc();
-    }
-    // Some of these functions drop metadata, names and alpha.
-    const ImageSpec& stored = picture.spec();
-    ImageSpec& spec = turned.specmod();
-    spec.extra_attribs = stored.extra_attribs;
-    spec.channelnames = stored.channelnames;
-    spec.alpha_channel = stored.alpha_channel;
-    spec.z_channel = stored.z_channel;
-    spec.attribute("Orientation", 1);
-    return turned;
 }
 
 TONEWRIGHT_NAMESPACE_END

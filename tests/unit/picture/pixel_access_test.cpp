@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/pixel_access.h"
+#include "picture/pixel_access.h"
 
 #include <OpenImageIO/fmath.h>
 #include <OpenImageIO/half.h>
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "image/half_float.h"
+#include "picture/half_float.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

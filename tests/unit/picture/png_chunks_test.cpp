@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/png_chunks.h"
+#include "picture/png_chunks.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "image/color_tags.h"
-#include "image/png_chunks.h"
 #include "lut/icc.h"
+#include "picture/color_tags.h"
+#include "picture/png_chunks.h"
 #include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 #include "tonewright/registry.h"
@@ -100,7 +100,8 @@ TEST(FileTags, SdrDisplaysHaveTheirProfile) {
 TEST(FileTags, EveryDisplayIsDescribed) {
     const std::vector<double> codes = {0, 0.02, 0.1, 0.35, 0.7, 1};
     for (const Display& display : all_displays()) {
-        ImageSpec spec(1, 1, 3, TypeDesc::FLOAT);
+        PictureSpec spec;
+        spec.nchannels = 3;
         tag_as_result_of(make_view(resolve_operator("clamp"), "lin_rec709", 0, display.id), spec);
         const std::optional<TaggedColor> color = tagged_color(spec);
         ASSERT_TRUE(color) << display.id;

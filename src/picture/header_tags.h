@@ -4,13 +4,11 @@
 // the picture, so that one function (picture_description.h) decides what they mean.
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tonewright/version.h"
+#include "picture/picture_spec.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -49,14 +47,14 @@ inline constexpr const char* kCicpTag = "CICP";
 
 /// Adds the facts of the file's header to the spec of a subimage. Damaged headers add nothing: the
 /// reader of the pixels reports them.
-/// @param format    OIIO's name
+/// @param format    OpenImageIO's name
 /// @param subimage  only parts of OpenEXR and pages of TIFF have headers of their own
 TONEWRIGHT_API void complete_header(const std::string& path, std::string_view format, int subimage,
-                                    OIIO::ImageSpec& spec);
+                                    PictureSpec& spec);
 
 /// Adds a line to kIgnored.
-TONEWRIGHT_API void add_ignored(OIIO::ImageSpec& spec, const std::string& line);
+TONEWRIGHT_API void add_ignored(PictureSpec& spec, const std::string& line);
 /// The lines of kIgnored.
-[[nodiscard]] TONEWRIGHT_API std::vector<std::string> ignored_of(const OIIO::ImageSpec& spec);
+[[nodiscard]] TONEWRIGHT_API std::vector<std::string> ignored_of(const PictureSpec& spec);
 
 TONEWRIGHT_NAMESPACE_END

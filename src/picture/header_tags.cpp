@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/header_tags.h"
+#include "picture/header_tags.h"
 
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +19,6 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-using OIIO::ImageSpec;
-using OIIO::ParamValue;
 using OIIO::TypeDesc;
 
 /// No profile of a picture is longer. A chunk that declares more is skipped.
@@ -88,7 +85,7 @@ class HeaderFile {
     std::uint64_t size_ = 0;
 };
 
-void set_bytes(ImageSpec& spec, const char* name, const std::string& bytes) {
+void set_bytes(PictureSpec& spec, const char* name, const std::string& bytes) {
     if (bytes.empty()) return;
     spec.attribute(name, TypeDesc(TypeDesc::UINT8, static_cast<int>(bytes.size())), bytes.data());
 }
@@ -125,7 +122,7 @@ class ExifBlock {
 };
 
 /// OpenImageIO 2.4 does not read the block in PNG and WebP.
-void read_orientation(std::string_view exif, ImageSpec& spec) {
+void read_orientation(std::string_view exif, PictureSpec& spec) {
     const ExifBlock block(exif);
     constexpr std::uint64_t kOrientation = 274;
     if (const std::size_t at = block.find(block.first(), kOrientation))
@@ -134,7 +131,7 @@ void read_orientation(std::string_view exif, ImageSpec& spec) {
 
 /// The index of the interoperability directory, which OpenImageIO does not read: "R03" is DCF's
 /// optional color space, Adobe RGB.
-void read_interoperability(std::string_view exif, ImageSpec& spec) {
+void read_interoperability(std::string_view exif, PictureSpec& spec) {
     const ExifBlock block(exif);
     constexpr std::uint64_t kExif = 0x8769;
     constexpr std::uint64_t kInteroperability = 0xA005;
@@ -147,13 +144,13 @@ void read_interoperability(std::string_view exif, ImageSpec& spec) {
         spec.attribute("Exif:InteroperabilityIndex", std::string(block.text(index + 8, 3)));
 }
 
-void set_primaries(ImageSpec& spec, const char* name, const std::array<float, 8>& xy) {
+void set_primaries(PictureSpec& spec, const char* name, const std::array<float, 8>& xy) {
     spec.attribute(name, TypeDesc(TypeDesc::FLOAT, 8), xy.data());
 }
 
 /// W3C PNG (third edition), 11.3.2: everything that states color comes before the first IDAT. The
 /// block of Exif comes after the pixels in files of older programs (PNG extensions 1.5.0).
-void read_png(HeaderFile& file, ImageSpec& spec) {
+void read_png(HeaderFile& file, PictureSpec& spec) {
     (void)file.bytes(8);
     std::array<float, 8> white_first{};
     bool has_chroma = false;
@@ -222,7 +219,7 @@ std::vector<double> numbers_of(std::string_view text) {
 std::string stops_of(double factor) { return fmt::format("{:+.2f}", std::log2(factor)); }
 
 /// Radiance: G. Ward, "Radiance File Formats" (filefmts.pdf), "Picture File Format".
-void read_radiance(HeaderFile& file, ImageSpec& spec) {
+void read_radiance(HeaderFile& file, PictureSpec& spec) {
     double exposure = 1;
     std::array<double, 3> correction = {1, 1, 1};
     std::vector<double> primaries;
@@ -307,7 +304,7 @@ void read_radiance(HeaderFile& file, ImageSpec& spec) {
 }
 
 /// WebP container specification (RIFF): VP8X, ICCP, EXIF, ANIM.
-void read_webp(HeaderFile& file, ImageSpec& spec) {
+void read_webp(HeaderFile& file, PictureSpec& spec) {
     (void)file.bytes(12);
     for (int i = 0; i < kMostBlocks && file.ok(); ++i) {
         const std::string type = file.bytes(4);
@@ -327,7 +324,7 @@ void read_webp(HeaderFile& file, ImageSpec& spec) {
 }
 
 /// Microsoft's BITMAPV4HEADER and BITMAPV5HEADER.
-void read_bmp(HeaderFile& file, ImageSpec& spec) {
+void read_bmp(HeaderFile& file, PictureSpec& spec) {
     const std::string head = file.bytes(14 + 40);
     const std::uint64_t size = HeaderFile::parse(head, 14, 4, true);
     if (!file.ok() || size < 108 || size > 124 || !file.seek(14)) return;
@@ -375,7 +372,7 @@ void read_bmp(HeaderFile& file, ImageSpec& spec) {
 }
 
 /// TIFF 6.0 and BigTIFF: the tags of color that OpenImageIO does not list.
-void read_tiff(HeaderFile& file, int page, ImageSpec& spec) {
+void read_tiff(HeaderFile& file, int page, PictureSpec& spec) {
     const std::string start = file.bytes(8);
     if (start.size() != 8) return;
     const bool is_little = start[0] == 'I';
@@ -426,7 +423,7 @@ void read_tiff(HeaderFile& file, int page, ImageSpec& spec) {
 }
 
 /// ISO/IEC 10918-1: markers up to the first scan.
-void read_jpeg(HeaderFile& file, ImageSpec& spec) {
+void read_jpeg(HeaderFile& file, PictureSpec& spec) {
     if (file.number(2, false) != 0xFFD8) return;
     bool has_gain_map = false;
     bool has_profile = false;
@@ -457,7 +454,7 @@ void read_jpeg(HeaderFile& file, ImageSpec& spec) {
 
 /// Wavefront RLA: six numbers of 16 bits follow the windows, then the text of gamma (16 bytes) and
 /// those of red, green, blue and white (24 bytes each).
-void read_rla(HeaderFile& file, ImageSpec& spec) {
+void read_rla(HeaderFile& file, PictureSpec& spec) {
     constexpr std::size_t kGamma = 28;
     constexpr std::size_t kChroma = 44;
     const std::string head = file.bytes(kChroma + 4 * std::size_t{24});
@@ -484,7 +481,7 @@ void read_rla(HeaderFile& file, ImageSpec& spec) {
 }
 
 /// P. Debevec's PFM: the number after width and height is a factor, whose sign is the byte order.
-void read_pfm(HeaderFile& file, ImageSpec& spec) {
+void read_pfm(HeaderFile& file, PictureSpec& spec) {
     const std::string magic = file.line();
     if (magic != "PF" && magic != "Pf") return;
     std::vector<double> numbers;
@@ -500,9 +497,9 @@ void read_pfm(HeaderFile& file, ImageSpec& spec) {
 }
 
 /// SMPTE ST 268:2003, table 1.
-void read_dpx(ImageSpec& spec) {
+void read_dpx(PictureSpec& spec) {
     const std::string transfer = spec.get_string_attribute("dpx:Transfer");
-    if (OIIO::Strutil::istarts_with(transfer, "Z depth")) {
+    if (starts_with_but_for_case(transfer, "Z depth")) {
         spec.attribute(file_tag::kImpossible,
                        fmt::format("dpx:Transfer is {}; expected colors, not depth", transfer));
     }
@@ -526,17 +523,16 @@ void read_dpx(ImageSpec& spec) {
 }
 
 /// Tags that OpenImageIO lists and that nobody applies.
-void name_others(std::string_view format, ImageSpec& spec) {
+void name_others(std::string_view format, PictureSpec& spec) {
     const std::string jpeg = spec.get_string_attribute("jpeg:ColorSpace");
     if (jpeg == "CMYK" || jpeg == "YCbCrK")
         add_ignored(spec, jpeg + ": CMYK is converted to RGB without a profile");
     if (spec.get_string_attribute("tiff:ColorSpace") == "CMYK")
         add_ignored(spec, "PhotometricInterpretation: CMYK is converted to RGB without a profile");
-    const auto is = [&](const char* name, const char* usual) {  // whole numbers or text
-        const ParamValue* value = spec.find_attribute(name);
-        return !value || value->get_string() == usual;
+    const auto is = [&](const char* name, float usual) {  // numbers or text
+        return !spec.find_attribute(name) || spec.get_float_attribute(name, usual + 1) == usual;
     };
-    if (format == "fits" && (!is("Bscale", "1") || !is("Bzero", "0")))
+    if (format == "fits" && (!is("Bscale", 1) || !is("Bzero", 0)))
         add_ignored(spec, "BSCALE, BZERO: pixels are taken as stored");
     if (format == "openexr" && spec.format == TypeDesc::UINT)
         add_ignored(spec, "UINT channels: whole numbers are usually ids, not light");
@@ -555,7 +551,7 @@ void name_others(std::string_view format, ImageSpec& spec) {
 }
 
 /// Photoshop File Formats Specification: the mode is bytes 24 and 25.
-void read_psd(HeaderFile& file, ImageSpec& spec) {
+void read_psd(HeaderFile& file, PictureSpec& spec) {
     if (!file.seek(24)) return;
     constexpr std::uint64_t kCmyk = 4;
     constexpr std::uint64_t kLab = 9;
@@ -567,7 +563,7 @@ void read_psd(HeaderFile& file, ImageSpec& spec) {
 
 /// The profile that newer OpenImageIO versions store. "OpenEXR File Layout": each part's header is
 /// attributes (name, type, size, value) up to an empty name.
-void read_openexr_profile(HeaderFile& file, int part, ImageSpec& spec) {
+void read_openexr_profile(HeaderFile& file, int part, PictureSpec& spec) {
     (void)file.bytes(8);
     for (int i = 0; i < kMostBlocks && part >= 0; ++i) {
         const std::string name = file.name();
@@ -590,7 +586,7 @@ void read_openexr_profile(HeaderFile& file, int part, ImageSpec& spec) {
 }
 
 /// Tags of OpenEXR that describe another rendering than the pixels.
-void read_openexr(ImageSpec& spec) {
+void read_openexr(PictureSpec& spec) {
     for (const char* name : {"renderingTransform", "lookModTransform"}) {
         if (!spec.find_attribute(name)) continue;
         add_ignored(spec, fmt::format("{}: the transform {} is not applied", name,
@@ -605,10 +601,13 @@ void read_openexr(ImageSpec& spec) {
     std::array<float, 2> neutral{};
     // OpenEXR, ImfStandardAttributes.h: the white of files without chromaticities is D65.
     std::array<float, 8> ends = {0, 0, 0, 0, 0, 0, 0.3127F, 0.3290F};
-    if (!spec.getattribute("adoptedNeutral", TypeDesc(TypeDesc::FLOAT, TypeDesc::VEC2),
-                           neutral.data()))
-        return;
-    (void)spec.getattribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), ends.data());
+    const PictureAttribute* stated =
+        spec.find_attribute("adoptedNeutral", TypeDesc(TypeDesc::FLOAT, TypeDesc::VEC2));
+    if (!stated) return;
+    std::copy_n(stated->numbers<float>(), neutral.size(), neutral.begin());
+    if (const PictureAttribute* xy =
+            spec.find_attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8)))
+        std::copy_n(xy->numbers<float>(), ends.size(), ends.begin());
     constexpr float kSame = 1e-3F;  // of programs that round to three digits
     if (std::fabs(neutral[0] - ends[6]) > kSame || std::fabs(neutral[1] - ends[7]) > kSame) {
         add_ignored(spec, fmt::format("adoptedNeutral: colors are not adapted to the white {}, {}",
@@ -618,7 +617,7 @@ void read_openexr(ImageSpec& spec) {
 }
 
 /// Encodings that OpenImageIO 2.4 delivers as if they were RGB.
-void check_photometric(ImageSpec& spec) {
+void check_photometric(PictureSpec& spec) {
     const std::string space = spec.get_string_attribute("tiff:ColorSpace");
     const int photometric = spec.get_int_attribute("tiff:PhotometricInterpretation", 0);
     // TIFF 6.0, Adobe's TIFF Technical Notes, and SGI's LogLuv (G. Ward Larson, 1998).
@@ -638,13 +637,13 @@ void check_photometric(ImageSpec& spec) {
 
 }  // namespace
 
-void add_ignored(ImageSpec& spec, const std::string& line) {
+void add_ignored(PictureSpec& spec, const std::string& line) {
     std::string all = spec.get_string_attribute(file_tag::kIgnored);
     if (!all.empty()) all += '\n';
     spec.attribute(file_tag::kIgnored, all + line);
 }
 
-std::vector<std::string> ignored_of(const ImageSpec& spec) {
+std::vector<std::string> ignored_of(const PictureSpec& spec) {
     std::vector<std::string> lines;
     std::istringstream text(std::string(spec.get_string_attribute(file_tag::kIgnored)));
     for (std::string line; std::getline(text, line);)
@@ -653,7 +652,7 @@ std::vector<std::string> ignored_of(const ImageSpec& spec) {
 }
 
 void complete_header(const std::string& path, std::string_view format, int subimage,
-                     ImageSpec& spec) {
+                     PictureSpec& spec) {
     spec.attribute(file_tag::kFormat, std::string(format));
     spec.attribute(file_tag::kColorSpace, spec.get_string_attribute("oiio:ColorSpace"));
     HeaderFile file(path);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/typedesc.h>
 
 #include <algorithm>
+#include <cstddef>
 
-#include "image/png_chunks.h"
+#include "picture/png_chunks.h"
 #include "tonewright/engine.h"
 #include "tonewright/view.h"
 
@@ -16,9 +17,11 @@ class LightLevelMeter {
   public:
     explicit LightLevelMeter(const Display& display) : to_light_(display.decode) {}
 
-    /// @param type   of the file, whose rounded values count
-    /// @param alpha  -1: none
-    void add(const OIIO::ImageBuf& rows, const OIIO::TypeDesc& type, int alpha);
+    /// @param pixels  interleaved
+    /// @param type    of the file, whose rounded values count
+    /// @param alpha   -1: none
+    void add(const float* pixels, std::size_t count, std::size_t channels,
+             const OIIO::TypeDesc& type, int alpha);
     [[nodiscard]] LightLevels levels() const {
         return {largest_ * kUnitLuminance, sum_ / std::max(count_, 1.0) * kUnitLuminance};
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/layers.h"
+#include "picture/layers.h"
 
 #include <algorithm>
 #include <array>
@@ -49,7 +49,7 @@ std::string last_part(std::string_view name) {
 
 }  // namespace
 
-std::vector<Layer> color_layers(const OIIO::ImageSpec& spec) {
+std::vector<Layer> color_layers(const PictureSpec& spec) {
     struct Group {
         std::string name;
         std::array<int, 4> of_role = {-1, -1, -1, -1};
@@ -124,7 +124,7 @@ const Layer* find_layer(const std::vector<Layer>& layers, std::string_view name)
     return found;
 }
 
-std::vector<int> order_of(const Layer& layer, const OIIO::ImageSpec& spec) {
+std::vector<int> order_of(const Layer& layer, const PictureSpec& spec) {
     std::vector<int> order = layer.channels;
     for (int c = 0; c < spec.nchannels; ++c) {
         if (std::find(order.begin(), order.end(), c) == order.end()) order.push_back(c);
@@ -132,7 +132,7 @@ std::vector<int> order_of(const Layer& layer, const OIIO::ImageSpec& spec) {
     return order;
 }
 
-void reorder(OIIO::ImageSpec& spec, const std::vector<int>& channels, bool has_alpha) {
+void reorder(PictureSpec& spec, const std::vector<int>& channels, bool has_alpha) {
     const std::vector<std::string> names = spec.channelnames;
     const int depth = spec.z_channel;
     spec.nchannels = static_cast<int>(channels.size());

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/layers.h"
+#include "picture/layers.h"
 
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-OIIO::ImageSpec spec_of(std::vector<std::string> channels) {
-    OIIO::ImageSpec spec(1, 1, static_cast<int>(channels.size()), OIIO::TypeDesc::HALF);
+PictureSpec spec_of(std::vector<std::string> channels) {
+    PictureSpec spec;
+    spec.width = spec.height = 1;
+    spec.nchannels = static_cast<int>(channels.size());
+    spec.format = OIIO::TypeDesc::HALF;
     spec.channelnames = std::move(channels);
     return spec;
 }
@@ -63,7 +66,7 @@ TEST(Layers, AreFoundByTheLastPartsOfTheirName) {
 }
 
 TEST(Layers, ReorderPutsALayerFirst) {
-    OIIO::ImageSpec spec = spec_of({"Z", "B", "G", "R"});
+    PictureSpec spec = spec_of({"Z", "B", "G", "R"});
     const auto layers = color_layers(spec);
     ASSERT_EQ(layers.size(), 1U);
     const std::vector<int> order = order_of(layers[0], spec);
@@ -77,6 +80,58 @@ TEST(Layers, ReorderPutsALayerFirst) {
         EXPECT_EQ(std::to_integer<int>(out[i]), expected[i]) << i;
     reorder(spec, order, false);
     EXPECT_EQ(spec.channelnames, (std::vector<std::string>{"R", "G", "B", "Z"}));
+}
+
+std::string picture_of(const std::vector<std::string>& names) {
+    const std::vector<Layer> layers = color_layers(spec_of(names));
+    const Layer* layer = picture_layer(layers);
+    return layer ? layer->name : "none";
+}
+
+TEST(Layers, ThePictureIsFoundAmongData) {
+    EXPECT_EQ(picture_of({"AO.R", "AO.G", "AO.B", "R", "G", "B"}), "");
+    EXPECT_EQ(picture_of({"V.AO.R", "V.AO.G", "V.AO.B", "V.Combined.R", "V.Combined.G",
+                          "V.Combined.B", "V.Emit.R", "V.Emit.G", "V.Emit.B"}),
+              "V.Combined");
+    EXPECT_EQ(picture_of({"Crypto00.r", "Crypto00.g", "Crypto00.b", "Crypto00.a", "beauty.red",
+                          "beauty.green", "beauty.blue"}),
+              "beauty");
+    EXPECT_EQ(
+        picture_of({"Normal.X", "Normal.Y", "Normal.Z", "diffuse.R", "diffuse.G", "diffuse.B"}),
+        "diffuse");
+    EXPECT_EQ(picture_of({"N.R", "N.G", "N.B", "uCryptoAsset.red", "uCryptoAsset.green",
+                          "uCryptoAsset.blue"}),
+              "none");
+    EXPECT_EQ(picture_of({"Z"}), "none");
+}
+
+TEST(Layers, NamesAreFoundByTheirLastParts) {
+    const std::vector<Layer> layers =
+        color_layers(spec_of({"a.beauty.R", "a.beauty.G", "a.beauty.B", "b.beauty.R", "b.beauty.G",
+                              "b.beauty.B", "Diffuse.r", "Diffuse.g", "Diffuse.b"}));
+    ASSERT_EQ(layers.size(), 3U);
+    EXPECT_EQ(find_layer(layers, "beauty"), nullptr) << "two layers have that name";
+    EXPECT_EQ(find_layer(layers, "B.Beauty"), &layers[1]);
+    EXPECT_EQ(find_layer(layers, "diffuse"), &layers[2]);
+    EXPECT_EQ(find_layer(layers, "ffuse"), nullptr);
+}
+
+TEST(Layers, PixelsFollowTheirNames) {
+    PictureSpec spec = spec_of({"Z", "b", "g", "r"});
+    spec.z_channel = 0;
+    const std::vector<Layer> layers = color_layers(spec);
+    ASSERT_EQ(layers.size(), 1U);
+    const std::vector<int> order = order_of(layers[0], spec);
+    EXPECT_EQ(order, (std::vector<int>{3, 2, 1, 0}));
+    reorder(spec, order, false);
+    EXPECT_EQ(spec.channelnames, (std::vector<std::string>{"R", "G", "B", "Z"}));
+    EXPECT_EQ(spec.alpha_channel, -1);
+    EXPECT_EQ(spec.z_channel, 3);
+    const std::vector<float> from = {9, 3, 2, 1, 8, 6, 5, 4};
+    std::vector<float> to(from.size());
+    reorder(reinterpret_cast<const std::byte*>(from.data()), 4, order, sizeof(float), 2,
+            reinterpret_cast<std::byte*>(to.data()));
+    EXPECT_EQ(to, (std::vector<float>{1, 2, 3, 9, 4, 5, 6, 8}));
 }
 
 }  // namespace

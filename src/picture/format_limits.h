@@ -4,13 +4,11 @@
 // do not check, and others write files that no reader takes.
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tonewright/version.h"
+#include "picture/picture_spec.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -53,7 +51,7 @@ struct FormatLimits {
 /// Channels of the picture in the order of the file: an index, or -1 for opaque alpha. A gray
 /// picture becomes RGB where a format has no gray. What a format does not store is left out.
 /// @returns  empty if the format stores no such colors
-[[nodiscard]] TONEWRIGHT_API std::vector<int> file_channels(const OIIO::ImageSpec& spec,
+[[nodiscard]] TONEWRIGHT_API std::vector<int> file_channels(const PictureSpec& spec,
                                                             const FormatLimits& limits,
                                                             bool leaves_out_alpha);
 

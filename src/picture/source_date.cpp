@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "picture/source_date.h"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -6,8 +8,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <system_error>
 
-#include "image/picture_file.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/compression.h"
+#include "picture/compression.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/strings.h"
-#include "image/color_tags.h"
+#include "picture/color_tags.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -44,7 +44,7 @@ const FormatCompressions* compressions_of(std::string_view format) {
 std::string_view format_of(std::string_view codec) { return codec == "avif" ? "heif" : codec; }
 
 void check_name_and_quality(const std::string& path, std::string_view codec,
-                            const WriteOptions& options) {
+                            const CompressionOptions& options) {
     const std::string& text = options.compression;
     const int quality = options.quality;
     const std::string_view format = format_of(codec);
@@ -108,12 +108,12 @@ void check_subsampling(const std::string& path, std::string_view format, const s
 }  // namespace
 
 void check_compression(const std::string& path, std::string_view codec,
-                       const WriteOptions& options) {
+                       const CompressionOptions& options) {
     check_name_and_quality(path, codec, options);
     check_subsampling(path, format_of(codec), options.subsampling);
 }
 
-void set_compression(OIIO::ImageSpec& spec, std::string_view codec, const WriteOptions& options) {
+void set_compression(PictureSpec& spec, std::string_view codec, const CompressionOptions& options) {
     // The source's compression may be one of another format, or have a quality of its own.
     const FormatCompressions* known = compressions_of(codec);
     const std::string name = spec.get_string_attribute("compression");
@@ -132,7 +132,12 @@ void set_compression(OIIO::ImageSpec& spec, std::string_view codec, const WriteO
     // becomes half as bright. ImageMagick and libvips use the same limit.
     constexpr int kFullChromaQuality = 90;
     constexpr int kDefaultQuality = 98;  // of OpenImageIO's writer
-    const int quality = spec.decode_compression_metadata("jpeg", kDefaultQuality).second;
+    int quality = spec.get_int_attribute("CompressionQuality", kDefaultQuality);
+    const std::string stated = spec.get_string_attribute("compression");
+    if (const std::size_t colon = stated.find(':'); colon != std::string::npos) {
+        quality = 0;
+        std::from_chars(&stated[colon] + 1, stated.data() + stated.size(), quality);
+    }
     spec.attribute("jpeg:subsampling", !options.subsampling.empty()    ? options.subsampling
                                        : quality >= kFullChromaQuality ? "4:4:4"
                                                                        : "4:2:0");

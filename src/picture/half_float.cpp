@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Compiled by Highway once for each instruction set.
-#include "image/half_float.h"
+#include "picture/half_float.h"
 
 #include <cstring>
 
@@ -27,7 +27,7 @@ TONEWRIGHT_NAMESPACE_END
 #endif
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "image/half_float.cpp"
+#define HWY_TARGET_INCLUDE "picture/half_float.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 
 #include "hwy/highway.h"

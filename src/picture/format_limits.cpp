@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/format_limits.h"
+#include "picture/format_limits.h"
 
 #include <fmt/format.h>
 
@@ -60,7 +60,7 @@ const FormatLimits& format_limits(std::string_view format) {
     return found == kFormats.end() ? kAnything : *found;
 }
 
-std::vector<int> file_channels(const OIIO::ImageSpec& spec, const FormatLimits& limits,
+std::vector<int> file_channels(const PictureSpec& spec, const FormatLimits& limits,
                                bool leaves_out_alpha) {
     const bool is_gray = spec.nchannels < 3;
     const int colors = is_gray ? 1 : 3;

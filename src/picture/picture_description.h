@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <OpenImageIO/imagebuf.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tonewright/tonemap.h"
+#include "picture/picture_error.h"
+#include "picture/picture_spec.h"
+#include "tonewright/tonemap_options.h"
 #include "tonewright/view.h"
 
 /// Facts in the header of a picture, and their consequences. Every reader of pictures asks here.
@@ -42,37 +42,32 @@ struct PictureDescription {
 /// @throws Error         `input` is an unknown name
 /// @throws PictureError  an unknown name, impossible chromaticities, a pair of code points without
 ///                       meaning, a damaged profile, an encoding that is not decoded
-[[nodiscard]] TONEWRIGHT_API PictureDescription describe_picture(const OIIO::ImageSpec& spec,
+[[nodiscard]] TONEWRIGHT_API PictureDescription describe_picture(const PictureSpec& spec,
                                                                  std::string_view input);
 
 /// The color alone. @see describe_picture
-[[nodiscard]] TONEWRIGHT_API SourceColor source_color(const OIIO::ImageSpec& spec,
+[[nodiscard]] TONEWRIGHT_API SourceColor source_color(const PictureSpec& spec,
                                                       std::string_view input);
 
 /// The spec of a picture that OpenImageIO may have read: with the name of its format, by which
 /// describe_picture() reads the metadata.
-[[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec described_spec(const OIIO::ImageBuf& picture);
+/// @param format  OpenImageIO's name; empty: not known
+[[nodiscard]] TONEWRIGHT_API PictureSpec described_spec(PictureSpec spec, std::string_view format);
 
 /// Only the attributes that describe_picture() reads, because rows do not need the texts of their
 /// picture.
-[[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec);
+[[nodiscard]] TONEWRIGHT_API PictureSpec with_color_metadata_alone(const PictureSpec& spec);
 
-/// Applies SourceColor::convert: the result has float pixels, and its metadata states linear
-/// Rec.709 or the primaries of `color`. Associated color is divided by alpha before.
-[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf converted_picture(const OIIO::ImageBuf& picture,
-                                                              const SourceColor& color);
-/// The spec of that result.
-[[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec converted_spec(const OIIO::ImageSpec& spec,
-                                                            const SourceColor& color);
+/// The spec of a picture whose pixels SourceColor::convert made: floats, and the metadata states
+/// linear Rec.709 or the primaries of `color`.
+[[nodiscard]] TONEWRIGHT_API PictureSpec converted_spec(const PictureSpec& spec,
+                                                        const SourceColor& color);
 
 /// Says that the pixels were decoded to the light of `color`. describe_picture() then ignores its
 /// input.
-TONEWRIGHT_API void tag_as_light(OIIO::ImageSpec& spec, const SourceColor& color);
+TONEWRIGHT_API void tag_as_light(PictureSpec& spec, const SourceColor& color);
 
-/// The picture as viewers show it: turned by its orientation, which becomes 1.
-/// @throws std::bad_alloc
-[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf upright(OIIO::ImageBuf picture);
 /// Exif's orientation of a picture; 1 for values that do not exist.
-[[nodiscard]] TONEWRIGHT_API int orientation_of(const OIIO::ImageSpec& spec);
+[[nodiscard]] TONEWRIGHT_API int orientation_of(const PictureSpec& spec);
 
 TONEWRIGHT_NAMESPACE_END

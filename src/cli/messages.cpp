@@ -80,6 +80,7 @@ const MessageStyle& command_style() {
             if (parameter == "list")
                 return fmt::format("`tonewright list{}{}`", value == "operators" ? "" : " --",
                                    value == "operators" ? "" : value);
+            if (parameter == "pixel_type") return fmt::format("-d {}", value);
             if (parameter == "dimension") return fmt::format("--{}", value);
             if (parameter == "target")
                 return std::string(value.empty() ? "-o" : "-o ") + std::string(value);

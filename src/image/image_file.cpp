@@ -24,8 +24,8 @@ OIIO::ImageBuf read_image(const std::string& path, double max_pixels) {
     return read_image(path, {.max_pixels = max_pixels});
 }
 
-void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
-                            const WriteOptions& options) {
+void write_result_atomically(const OIIO::ImageBuf& image, const std::string& path,
+                             const WriteOptions& options, const OIIO::TypeDesc& source) {
     const auto refuse = [&](const std::string& reason) {
         throw FileError(fmt::format("{}: cannot write: {}", path, reason));
     };
@@ -35,10 +35,16 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
     with_memory_for(path, [&] {
         remove_leftovers({path});
         PictureWriter writer(path, options);
+        writer.keep_type(source);
         writer.open(image.spec());
         writer.write_rows(image);
         writer.finish();
     });
+}
+
+void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
+                            const WriteOptions& options) {
+    write_result_atomically(image, path, options, OIIO::TypeUnknown);
 }
 
 void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,

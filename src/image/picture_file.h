@@ -148,6 +148,16 @@ TONEWRIGHT_API void report_header(const OIIO::ImageSpec& spec, std::string_view 
 /// @throws FileError  it is not complete
 TONEWRIGHT_API void check_is_complete(PictureReader& reader);
 
+/// Pixel type of an OpenEXR file for a picture of another type: half for half and for 8 bits, whose
+/// codes the 11 significant bits of half tell apart, else float.
+[[nodiscard]] TONEWRIGHT_API OIIO::TypeDesc openexr_type(const OIIO::TypeDesc& source);
+
+/// write_image_atomically() of a picture that is made from one of the pixel type `source`.
+/// @see PictureWriter::keep_type
+TONEWRIGHT_API void write_result_atomically(const OIIO::ImageBuf& image, const std::string& path,
+                                            const WriteOptions& options,
+                                            const OIIO::TypeDesc& source);
+
 /// Writes a picture from its first row to its last under a temporary name, and renames it when it
 /// is complete. @see write_image_atomically
 class TONEWRIGHT_API PictureWriter {
@@ -162,6 +172,10 @@ class TONEWRIGHT_API PictureWriter {
     PictureWriter(const PictureWriter&) = delete;
     PictureWriter& operator=(const PictureWriter&) = delete;
 
+    /// Before opening: the picture is made from one of this pixel type. If the options state none,
+    /// an OpenEXR file has openexr_type(). Other formats keep their own defaults.
+    /// @param source  UNKNOWN: changes nothing
+    void keep_type(const OIIO::TypeDesc& source);
     /// The size of a picture in a file, and its pixel type if the format can be asked without a
     /// file (else UNKNOWN). Changes nothing.
     /// @throws FileError
@@ -209,6 +223,9 @@ class TONEWRIGHT_API PictureWriter {
     void watch_cover(const OIIO::ImageBuf& rows);
     void warn_of_cover() const;
     [[nodiscard]] OIIO::ImageBuf over_background(const OIIO::ImageBuf& rows) const;
+    /// Counts pixels whose color is beyond the range of half.
+    void watch_range(const OIIO::ImageBuf& rows);
+    void warn_of_range() const;
     void write_part(const OIIO::ImageBuf& rows);
     void write_fitted(const OIIO::ImageBuf& rows);
 
@@ -223,6 +240,7 @@ class TONEWRIGHT_API PictureWriter {
     bool multiplies_by_alpha_ = false;  // the picture has straight alpha, and the file has not
     double pixel_count_ = 0;            // of what is written
     double lost_count_ = 0;             // pixels whose light straight alpha cannot hold
+    double beyond_half_count_ = 0;      // pixels whose color is infinite as half
     std::optional<OIIO::ROI> window_;   // to write; none: all of the picture
     bool divides_by_alpha_ = false;
     std::vector<float> kept_;  // what was written, for WriteOptions::verifies

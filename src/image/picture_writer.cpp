@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <numeric>
@@ -60,6 +62,10 @@ CompressionOptions compression_of(const WriteOptions& options) {
 }
 
 }  // namespace
+
+OIIO::TypeDesc openexr_type(const OIIO::TypeDesc& source) {
+    return source == OIIO::TypeHalf || source.size() == 1 ? OIIO::TypeHalf : OIIO::TypeFloat;
+}
 
 PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int nthreads)
     : path_(path), options_(std::move(options)) {
@@ -237,6 +243,12 @@ void PictureWriter::plan_type(ImageSpec& spec, const ImageSpec& picture,
     if (options_.bits > 0) spec.attribute("oiio:BitsPerSample", options_.bits);
 }
 
+void PictureWriter::keep_type(const OIIO::TypeDesc& source) {
+    if (format() != "openexr" || options_.type != OIIO::TypeUnknown || source == OIIO::TypeUnknown)
+        return;
+    options_.type = openexr_type(source);
+}
+
 ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     ImageSpec spec = picture;
     spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
@@ -410,6 +422,47 @@ void PictureWriter::warn_of_cover() const {
     }
 }
 
+void PictureWriter::watch_range(const ImageBuf& rows) {
+    if (out_->spec().format != OIIO::TypeHalf || !rows.localpixels()) return;
+    // Larger floats round to infinity: IEEE 754, binary16.
+    constexpr float kEnd = 65520;
+    constexpr unsigned kInfiniteHalf = 0x7C00;
+    const bool is_half = rows.spec().format == OIIO::TypeHalf;
+    if (!is_half && rows.spec().format != OIIO::TypeFloat) return;
+    const int colors = std::min(rows.nchannels(), 3);
+    for (int y = rows.ybegin(); y < rows.yend(); ++y) {
+        const auto* pixel =
+            static_cast<const std::byte*>(rows.pixeladdr(rows.xbegin(), y, rows.zbegin()));
+        int count = 0;
+        for (int x = rows.xbegin(); x < rows.xend(); ++x, pixel += rows.pixel_stride()) {
+            bool is_beyond = false;
+            for (int c = 0; c < colors; ++c) {
+                if (is_half) {
+                    std::uint16_t bits = 0;
+                    std::memcpy(&bits, pixel + 2 * c, sizeof(bits));
+                    is_beyond |= (bits & 0x7FFFU) == kInfiniteHalf;
+                } else {
+                    float value = 0;
+                    std::memcpy(&value, pixel + 4 * c, sizeof(value));
+                    is_beyond |= std::abs(value) >= kEnd;
+                }
+            }
+            count += is_beyond ? 1 : 0;
+        }
+        beyond_half_count_ += count;
+    }
+}
+
+void PictureWriter::warn_of_range() const {
+    if (beyond_half_count_ == 0 || !options_.warn) return;
+    const ImageSpec& file = out_->spec();
+    const double pixels = static_cast<double>(file.width) * file.height * std::max(file.depth, 1);
+    options_.warn(
+        fmt::format("{} % of the pixels are infinite, because half ends at 65504; "
+                    "<<pixel_type=float>> keeps them",
+                    percent_text(beyond_half_count_ / pixels)));
+}
+
 ImageBuf PictureWriter::over_background(const ImageBuf& rows) const {
     ImageBuf result = rows.copy(OIIO::TypeFloat);
     const int alpha = rows.spec().alpha_channel;
@@ -496,6 +549,7 @@ void PictureWriter::write_part(const ImageBuf& rows) {
 
 void PictureWriter::write_fitted(const ImageBuf& rows) {
     const ROI part = rows.roi();
+    watch_range(rows);
     if (options_.verifies) {
         const ImageSpec& file = out_->spec();
         kept_.resize(static_cast<std::size_t>(file.width) * static_cast<std::size_t>(file.height) *
@@ -553,6 +607,7 @@ void PictureWriter::check_blocks() const {
 
 void PictureWriter::finish() {
     warn_of_cover();
+    warn_of_range();
     const bool is_avif = codec() == "avif";
     const std::string file_format(format());
     const ImageSpec requested = out_->spec();

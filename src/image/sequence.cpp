@@ -68,8 +68,9 @@ bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame,
         const PictureReader source(frame.in, 0, read);
         PictureReader result(frame.out, 0, {.max_pixels = kUnlimited});
         const OIIO::ImageSpec is = result.spec();
-        const OIIO::ImageSpec should = PictureWriter(frame.out, options.write)
-                                           .file_spec(result_spec(tonemapper, source.spec()));
+        PictureWriter writer(frame.out, options.write);
+        writer.keep_type(source.spec().format);
+        const OIIO::ImageSpec should = writer.file_spec(result_spec(tonemapper, source.spec()));
         if (is.width != should.width || is.height != should.height || is.depth != should.depth ||
             is.nchannels != should.nchannels ||
             (should.format != OIIO::TypeUnknown && is.format != should.format)) {

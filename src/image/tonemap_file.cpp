@@ -276,9 +276,11 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     PictureWriter writer(out, write,
                          nthreads);  // reports a wrong name before it reads a large file
     PictureReader reader(in, nthreads, read);
-    check_pixel_type("source", reader.spec().format);
+    const OIIO::TypeDesc type = reader.spec().format;  // of the file: light is float
+    check_pixel_type("source", type);
     (void)channel_layout(
         picture_spec(reader.spec()));  // reports wrong channels before it reads them
+    writer.keep_type(type);
     report_header(reader.spec(), tonemapper.options().input, read);
     if (read.header) read.header(reader.spec());
     if (read.warn) {
@@ -296,7 +298,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         give_date(result.specmod(), in);
         if (write.write_provenance)
             add_provenance(result.specmod(), tonemapper.options(), read.resize);
-        write_image_atomically(result, out, write);
+        write_result_atomically(result, out, write, type);
         return;
     }
     std::optional<Tonemapper> own;

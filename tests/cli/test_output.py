@@ -52,6 +52,45 @@ def png(folder, name, code):
     return write(folder / name, spec_of(code, "uint8"), code.astype(np.float32))
 
 
+@pytest.mark.parametrize("kind, written, words", [
+    ("half", "half", "(half, as the input; -d float for 32 bits)"),
+    ("float", "float", "(float, as the input; -d half for 16 bits)"),
+    ("uint8", "half", "(half, which holds uint8; -d float for 32 bits)"),
+    ("uint16", "float", "(float, which holds uint16; -d half for 16 bits)"),
+])
+def test_pixel_type(to, report, scratch, kind, written, words):
+    """EXR keeps the type of the input, and the line says so; -d decides otherwise, and other formats do not follow.
+
+    Half has 11 significant bits (IEEE 754, binary16): it tells all codes of 8 bits apart, not those of 16.
+    """
+    code = np.linspace(0, 1, 256, dtype=np.float32).reshape(16, 16, 1).repeat(3, axis=2)
+    source = write(scratch / ("in.tif" if kind.startswith("uint") else "in.exr"), spec_of(code, kind), code)
+    linear = ["--display", "linear"]
+    exit_code, said = to.apply(source, "out.exr", *linear, "-v")
+    is_kind = str(oiio.ImageInput.open(str(scratch / "out.exr")).spec().format)
+    report.check(f"{kind} to EXR", exit_code == 0 and is_kind == written and words in said, f"{is_kind} {said}")
+    other = "float" if written == "half" else "half"
+    exit_code, said = to.apply(source, "out.exr", *linear, "-v", "-d", other)
+    is_kind = str(oiio.ImageInput.open(str(scratch / "out.exr")).spec().format)
+    report.check(f"{kind} to EXR, -d {other}", exit_code == 0 and is_kind == other and "-d " not in said, f"{is_kind} {said}")
+    exit_code, said = to.apply(source, "out.png", "-v")
+    report.check(f"{kind} to PNG: 8 bits, and no word of it", exit_code == 0 and "-d " not in said
+                 and str(oiio.ImageInput.open(str(scratch / "out.png")).spec().format) == "uint8", said)
+
+
+def test_beyond_half(to, report, scratch):
+    """Half ends at 65504, and an operator may make a sun brighter. 1 of 32 pixels is 3.125 %, which is rounded up."""
+    light = np.full((4, 8, 3), 0.5, np.float32)
+    light[0, 0] = (65504, 0, 0)
+    source = write(scratch / "sun.exr", spec_of(light, "half"), light)
+    options = ["--display", "linear"]
+    exit_code, said = to.apply(source, "out.exr", "--operator", "2*x", *options)
+    report.check("a sun beyond half: a warning with its share", exit_code == 0 and "warning: " in said
+                 and "3.2 % of the pixels are infinite, because half ends at 65504; -d float keeps them" in said, said)
+    exit_code, said = to.apply(source, "out.exr", "--operator", "2*x", *options, "-d", "float")
+    report.check("-d float keeps it, without a warning", exit_code == 0 and not said, said)
+
+
 def saturated_photograph(size=128):
     """Patches of saturated hues with edges at every angle, as of flowers or signs, and fine detail on them."""
     rng = np.random.default_rng(3)

@@ -289,6 +289,29 @@ std::size_t print_failures(const std::vector<FrameFiles>& files) {
     return failed;
 }
 
+/// True if the output has the pixel type of the input, because no option states one.
+bool keeps_type(const FrameFiles& file, const ApplyOptions& options) {
+    return options.type.empty() && extension_of(file.out) == ".exr";
+}
+
+/// " (half, as the input; -d float for 32 bits)"; empty if an option or the format decides.
+std::string kept_type_text(const FrameFiles& file, const ApplyOptions& options,
+                           const OIIO::TypeDesc& source) {
+    if (!keeps_type(file, options)) return {};
+    const OIIO::TypeDesc type = openexr_type(source);
+    const std::string why =
+        type == source ? "as the input" : fmt::format("which holds {}", source.c_str());
+    return fmt::format(" ({}, {}; {})", type.c_str(), why,
+                       type == OIIO::TypeHalf ? "-d float for 32 bits" : "-d half for 16 bits");
+}
+
+/// ", pixel types as the inputs; ...", for several files.
+std::string kept_type_text(const std::vector<FrameFiles>& files, const ApplyOptions& options) {
+    return says_what_was_done() && !files.empty() && keeps_type(files.front(), options)
+               ? ", pixel types as the inputs (-d float for 32 bits)"
+               : "";
+}
+
 /// One line for all, on a terminal or if not all were simply written.
 void print_summary(const std::string& text, bool is_all_written) {
     if (says_what_was_done() || (!is_all_written && !message_options().is_quiet))
@@ -297,7 +320,7 @@ void print_summary(const std::string& text, bool is_all_written) {
 
 /// Lines for failures, and one for all.
 /// @returns  the exit code
-int print_summary(const Shot& shot) {
+int print_summary(const Shot& shot, const ApplyOptions& options) {
     std::vector<int> failed;
     std::size_t skipped = 0;
     for (std::size_t i = 0; i < shot.frames.size(); ++i) {
@@ -314,6 +337,7 @@ int print_summary(const Shot& shot) {
     if (shot.held_count > 0) text += fmt::format(", {} held for missing ones", shot.held_count);
     if (!failed.empty())
         text += fmt::format(", {} failed: {}", failed.size(), format_frames(failed));
+    text += kept_type_text(shot.frames, options);
     print_summary(text, written == count && shot.held_count == 0);
     return failed.empty() ? kOk : kCheckFailed;
 }
@@ -329,11 +353,12 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Ap
     const OIIO::ImageSpec spec =
         header ? *header : PictureReader(file.in, 1, read_options_of(given.picture)).spec();
     const PictureDescription said = describe_picture(picture_spec(spec), options.input);
-    std::string text =
-        fmt::format("apply: {} ({} x {} {}, {} by {}) -> {}: {} ({}), exposure {:+.3g}, display {}",
-                    file.in, spec.width, spec.height, spec.format.c_str(), said.color.name,
-                    said.rule, file.out, op.op->view, operator_text(op),
-                    file.exposure_stops.value_or(options.exposure_stops), options.display);
+    std::string text = fmt::format(
+        "apply: {} ({} x {} {}, {} by {}) -> {}{}: {} ({}), exposure {:+.3g}, display "
+        "{}",
+        file.in, spec.width, spec.height, spec.format.c_str(), said.color.name, said.rule, file.out,
+        kept_type_text(file, given, spec.format), op.op->view, operator_text(op),
+        file.exposure_stops.value_or(options.exposure_stops), options.display);
     if (!given.resize.empty()) {
         const OIIO::ImageSpec size = resized_spec(spec, given.resize, kUnlimited);
         text += fmt::format(", resized to {} x {}", size.full_width, size.full_height);
@@ -395,7 +420,7 @@ int apply_to_shot(Tonemapper& tonemapper, const ApplyOptions& options, const Fra
     sequence.skip_existing = options.frames.skip_existing;
     sequence.jobs = options.frames.jobs;
     run(tonemapper, shot.frames, sequence, options, messages, "frames");
-    return print_summary(shot);
+    return print_summary(shot, options);
 }
 
 int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
@@ -415,6 +440,7 @@ int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
     std::string text = fmt::format("{} picture{}: {} written", files.size(),
                                    files.size() == 1 ? "" : "s", written);
     if (failed > 0) text += fmt::format(", {} failed", failed);
+    text += kept_type_text(files, options);
     print_summary(text, failed == 0);
     return failed == 0 ? kOk : kCheckFailed;
 }

@@ -70,7 +70,9 @@ struct ReadOptions {
 /// Options for writing a picture file.
 struct WriteOptions {
     /// Pixel type of the file; UNKNOWN: the buffer's, or OIIO's replacement for this format (8 bits
-    /// for a float picture as PNG or JPEG, but 16 for PNG in PQ or HLG).
+    /// for a float picture as PNG or JPEG, but 16 for PNG in PQ or HLG). OpenEXR files that
+    /// tonemap_file() writes are half if the source is half or has 8 bits, else float. The source's
+    /// type is the widest of its channels, as of half colors and a float Z.
     OIIO::TypeDesc type = OIIO::TypeUnknown;
     /// Bits of each channel of a DPX file, 10 or 12, with `type` UINT16. 0: all bits of the type.
     int bits = 0;

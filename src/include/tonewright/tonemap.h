@@ -168,17 +168,18 @@ TONEWRIGHT_API bool map_colors(
     int nthreads = 0) noexcept;
 
 /// Tone maps a file to a file. The result equals that of read_image(), tonemap() and
-/// write_image_atomically() to the last byte, but needs memory for some rows only. A picture that
-/// lies on its side (`Orientation`) is turned if the format of `out` has no such tag (all but JPEG
-/// and TIFF), which needs memory for all of it. A picture without a date gets that of the
-/// environment variable SOURCE_DATE_EPOCH, else its file's (UTC). Some formats would record the
-/// current time, and a second run would give other bytes.
+/// write_image_atomically() to the last byte (to OpenEXR, with the pixel type of the source:
+/// WriteOptions::type), but needs memory for some rows only. A picture that lies on its side
+/// (`Orientation`) is turned if the format of `out` has no such tag (all but JPEG and TIFF), which
+/// needs memory for all of it. A picture without a date gets that of the environment variable
+/// SOURCE_DATE_EPOCH, else its file's (UTC). Some formats would record the current time, and a
+/// second run would give other bytes.
 ///
 /// Rows are read, tone mapped and written at the same time. An operator that takes statistics reads
 /// the file twice. Volumes and the pictures of local operators are read into memory. `out` may be
 /// `in`.
 ///
-/// @param type      @see write_image_atomically
+/// @param type      @see WriteOptions::type
 /// @param nthreads  0: OIIO's `threads` attribute. 1: one step after the other in the calling
 ///                  thread (OpenEXR has threads of its own: OIIO's `exr_threads` attribute).
 /// @throws FileError  @see read_image, write_image_atomically; a picture that cannot be tone mapped

@@ -162,7 +162,8 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
-    dtype: "uint8", "uint16", "half" or "float", for DPX also "uint10" and "uint12" (default: the format's).
+    dtype: "uint8", "uint16", "half" or "float", for DPX also "uint10" and "uint12" (default: the format's; of EXR the
+    source's: half for half and 8 bits, else float).
     alpha: "keep", "ignore" (leave it out), "opaque" (make it 1), or "over:R,G,B" (composite over a background in code
     values, [0, 1]).
     subimage: part or page of the file: its number from 0 or its name (default: the first picture).

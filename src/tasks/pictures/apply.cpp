@@ -140,12 +140,13 @@ void tonemap_pictures(const Tonemapper& tonemapper, std::vector<FrameFiles>& fil
 
 void write_with_legend(const Tonemapper& tonemapper, OIIO::ImageBuf picture, const FrameFiles& file,
                        const WriteOptions& write, const ReadOptions& read, int nthreads) {
+    const OIIO::TypeDesc type = picture.spec().format;
     if (!read.resize.empty())
         picture = resized(picture, file.in, tonemapper.options(), read, nthreads);
     OIIO::ImageBuf shown;
     if (!tonemapper(shown, picture, {}, nthreads))
         throw FileError(file.in + ": " + first_line(shown.geterror()));
-    write_image_atomically(with_legend(with_associated_alpha(shown)), file.out, write);
+    write_result_atomically(with_legend(with_associated_alpha(shown)), file.out, write, type);
 }
 
 LutSource lut_source(OIIO::ImageBuf picture, const std::string& path, const TonemapOptions& light,
@@ -155,6 +156,7 @@ LutSource lut_source(OIIO::ImageBuf picture, const std::string& path, const Tone
         return source_color(picture_spec(picture.spec()), light.input);
     });
     std::string name = color.name;
+    const OIIO::TypeDesc type = picture.spec().format;
     if (!read.resize.empty()) {
         picture = resized(picture, path, light, read, nthreads);
         color = source_color(picture_spec(picture.spec()), light.input);
@@ -163,7 +165,7 @@ LutSource lut_source(OIIO::ImageBuf picture, const std::string& path, const Tone
         color = source_color(picture_spec(picture.spec()), kAutoInput);
         name = color.name;
     }
-    return {std::move(picture), std::move(color), std::move(name)};
+    return {std::move(picture), type, std::move(color), std::move(name)};
 }
 
 void write_through_lut(const LutSource& source, const FrameFiles& file,
@@ -191,7 +193,7 @@ void write_through_lut(const LutSource& source, const FrameFiles& file,
             "Software",
             fmt::format("Tonewright {}: LUT {}{}", TONEWRIGHT_VERSION, request.lut_name, size));
     }
-    write_image_atomically(result, file.out, request.write);
+    write_result_atomically(result, file.out, request.write, source.type);
 }
 
 TONEWRIGHT_NAMESPACE_END

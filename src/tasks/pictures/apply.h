@@ -37,6 +37,7 @@ void write_with_legend(const Tonemapper& tonemapper, OIIO::ImageBuf picture, con
 /// A picture before a LUT.
 struct LutSource {
     OIIO::ImageBuf picture;
+    OIIO::TypeDesc type;  // of its file
     SourceColor color;
     std::string name;  // of the color of the file
 };

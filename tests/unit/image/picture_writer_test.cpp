@@ -57,6 +57,29 @@ TEST(FileTags, FormatsWithoutColorTagsWarn) {
               std::vector<std::string>{"pixels are 8 bits, not 16 bits"});
 }
 
+TEST(PixelRange, ColorsBeyondHalfAreCounted) {
+    const Folder folder;
+    ImageSpec spec(10, 10, 4, TypeDesc::FLOAT);
+    spec.channelnames = {"R", "G", "B", "Z"};
+    ImageBuf picture(spec);
+    OIIO::ImageBufAlgo::fill(picture, {65504.0F, -65504.0F, 65519.0F, 1e9F});
+    const auto half = [&] {
+        return warnings_of(picture, folder / "a.exr", {.type = TypeDesc::HALF});
+    };
+    // The largest half is 65504; numbers below 65520 round to it. Z is no color.
+    EXPECT_EQ(half(), std::vector<std::string>());
+    const std::vector<float> beyond = {0, -65520.0F, 0, 0};
+    picture.setpixel(3, 4, 0, beyond.data());
+    const std::vector<std::string> expected = {
+        "1 % of the pixels are infinite, because half ends at 65504; <<pixel_type=float>> keeps "
+        "them"};
+    EXPECT_EQ(half(), expected);
+    EXPECT_EQ(warnings_of(picture, folder / "a.exr", {.type = TypeDesc::FLOAT}),
+              std::vector<std::string>());
+    picture = picture.copy(TypeDesc::HALF);
+    EXPECT_EQ(half(), expected);
+}
+
 TEST(FileTags, AWarningThatThrowsLeavesNothing) {
     const Folder folder;
     const std::string path = folder / "a.jpg";

@@ -8,9 +8,12 @@
 
 #include <array>
 #include <csignal>
+#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "image/picture_file.h"
 #include "image/tonemap_file.h"
@@ -59,6 +62,9 @@ class TonemapFile : public testing::Test {
                      TypeDesc type = OIIO::TypeUnknown) {
         const ImageBuf source = read_image(in);
         const std::string whole = folder_ / ("whole_" + out);
+        const bool keeps_half = type == OIIO::TypeUnknown && out.ends_with(".exr") &&
+                                source.spec().format == TypeDesc::HALF;
+        if (keeps_half) type = TypeDesc::HALF;
         write_image_atomically(tonemap(source, options), whole, type);
         const std::string wanted = read(whole);
         ASSERT_GT(wanted.size(), 100U);
@@ -187,6 +193,44 @@ TEST_F(TonemapFile, StatisticsAreOfTheWholePicture) {
     OIIO::ImageBufAlgo::fill(bare, {0.0F}, OIIO::ROI(0, kWidth, 0, kHeight, 0, 1, 3, 4));
     write_image_atomically(bare, in);
     expect_same(in, "out.exr", {.op = resolve_picture_operator("drago")});
+}
+
+TEST_F(TonemapFile, OpenExrKeepsThePixelType) {
+    const Tonemapper tonemapper({.op = resolve_picture_operator("hable")});
+    const auto written = [&](const std::string& in, const std::string& out,
+                             const ReadOptions& read = {}, WriteOptions write = {}) {
+        tonemap_file(tonemapper, in, folder_ / out, write, read, 1);
+        return PictureReader(folder_ / out).spec().format;
+    };
+    const auto made = [&](const std::string& name, TypeDesc type) {
+        put(spec_of({"R", "G", "B"}, type), folder_ / name, 1);
+        return std::string(folder_ / name);
+    };
+    const std::string half = made("half.exr", TypeDesc::HALF);
+    const std::string single = made("float.exr", TypeDesc::FLOAT);
+    EXPECT_EQ(written(half, "a.exr"), TypeDesc(TypeDesc::HALF));
+    EXPECT_EQ(written(single, "a.exr"), TypeDesc(TypeDesc::FLOAT));
+    EXPECT_EQ(written(half, "a.exr", {}, written_as(TypeDesc::FLOAT)), TypeDesc(TypeDesc::FLOAT));
+    EXPECT_EQ(written(single, "a.exr", {}, written_as(TypeDesc::HALF)), TypeDesc(TypeDesc::HALF));
+    // Half has 11 significant bits: enough for codes of 8 bits, not for those of 16.
+    EXPECT_EQ(written(made("8.tif", TypeDesc::UINT8), "a.exr"), TypeDesc(TypeDesc::HALF));
+    EXPECT_EQ(written(made("16.tif", TypeDesc::UINT16), "a.exr"), TypeDesc(TypeDesc::FLOAT));
+    // Resized light is float, and pictures that are turned pass through memory.
+    ReadOptions resize;
+    resize.resize = "50%";
+    EXPECT_EQ(written(half, "a.exr", resize), TypeDesc(TypeDesc::HALF));
+    ImageSpec lying = spec_of({"R", "G", "B"}, TypeDesc::UINT8);
+    lying.attribute("Orientation", 6);
+    put(lying, folder_ / "lying.tif", 1);
+    EXPECT_EQ(written(folder_ / "lying.tif", "a.exr"), TypeDesc(TypeDesc::HALF));
+    // The widest channel decides, because depth must not lose digits.
+    ImageSpec mixed = spec_of({"R", "G", "B", "Z"}, TypeDesc::FLOAT);
+    mixed.channelformats = {TypeDesc::HALF, TypeDesc::HALF, TypeDesc::HALF, TypeDesc::FLOAT};
+    put(mixed, folder_ / "mixed.exr", 1);
+    EXPECT_EQ(written(folder_ / "mixed.exr", "a.exr"), TypeDesc(TypeDesc::FLOAT));
+    // Other formats have their own defaults.
+    EXPECT_EQ(written(half, "a.png"), TypeDesc(TypeDesc::UINT8));
+    EXPECT_EQ(written(half, "a.tif"), TypeDesc(TypeDesc::FLOAT));
 }
 
 TEST_F(TonemapFile, GrayStaysGrayOrBecomesColor) {

@@ -86,6 +86,7 @@ void add_apply(CommandLine& program) {
                 "share of the operator; the rest is a plain clamp, blended in code values",
                 {.range = {{0.0, 1.0}}});
     add_file_options(command, *options);
+    add_progress(command);
     command.title("Pictures");
     command.add_flag("--dither", &options->dither,
                      "dither 8-bit output by half a code value, alike in every frame");

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "base/format_number.h"
-#include "cli/elapsed_line.h"
 #include "cli/messages.h"
 #include "cli/picture_commands.h"
+#include "cli/progress.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
 #include "lut/display_code.h"
@@ -72,8 +72,8 @@ void bake_one(const Options& options) {
             "bake: OPERATOR is missing; expected an id from `tonewright list`, or --all FOLDER");
     if (options.file.empty()) throw Error("bake: -o is missing; expected -o FILE");
     const BakeRequest request = request_of(options);
-    const BakeResult result = with_elapsed_line(
-        "bake", [&](const Listener& listener) { return bake(request, listener); });
+    const BakeResult result =
+        with_progress("bake", [&](const Listener& listener) { return bake(request, listener); });
     const View& view = result.request.view;
     const Lut& lut = result.baked.lut;
     const LutError& error = result.baked.error;
@@ -140,7 +140,7 @@ void print_exact_files(const Options& options) {
         if (request.application && request.application != &host) continue;
         fmt::print("\n  {}: {}\n", host.id, host.title);
         const std::vector<ExactFile> found = [&] {
-            const ElapsedLine line("bake --exact");
+            const Progress line("bake --exact");
             return files.of(host);
         }();
         for (const ExactFile& file : found) {
@@ -215,6 +215,7 @@ void add_bake(CommandLine& program) {
                 "bits of a value: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
     command.add("--icc-version", "N", &options->icc_version, "version of a device link: 2 or 4",
                 {.choices = {"2", "4"}, .default_text = "2"});
+    add_progress(command);
     command.common({"-o", "--for", "--format", "--all", "--set", "--look", "--exposure", "--input",
                     "--display", "--input-encoding", "--size", "--max-error"});
     command.footer(

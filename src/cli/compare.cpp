@@ -43,6 +43,7 @@ void add_compare(CommandLine& program) {
                 {.range = {{0.1, 1000.0}}});
     command.add("--pictures", "FOLDER", &options->pictures,
                 "folder for the pictures at full size, as 8-bit PNG files");
+    add_progress(command);
     command.title("Split picture");
     command.add(
         "--split", "FRACTION", &options->split,

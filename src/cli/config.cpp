@@ -5,9 +5,10 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "cli/elapsed_line.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "cli/progress.h"
+#include "cli/shared_options.h"
 #include "cli/suggestions.h"
 #include "tasks/config.h"
 #include "tonewright/error.h"
@@ -41,7 +42,7 @@ void change_existing(const Options& options) {
     if (options.is_removed) change.kind = Kind::remove;
     change.options = options.config;
     change.has_backup = options.has_backup;
-    const ChangedConfig changed = with_elapsed_line("config", [&](const Listener& listener) {
+    const ChangedConfig changed = with_progress("config", [&](const Listener& listener) {
         change.warn = listener.warn;
         return change_config(options.into, change);
     });
@@ -87,7 +88,7 @@ int run_config(Options& options) {
     wanted.working = find_input_space(wanted.working).id;
     const ResultLine result;
     const std::vector<WrittenConfig> written =
-        with_elapsed_line("config", [&](const Listener& listener) {
+        with_progress("config", [&](const Listener& listener) {
             return write_config({wanted, options.folder, options.archive}, listener);
         });
     for (const WrittenConfig& w : written) {
@@ -144,6 +145,7 @@ void add_config(CommandLine& program) {
     command.add("--exposure-views", "LIST", &config.exposure_stops,
                 "add every view again with this exposure, in stops",
                 {.range = {{-16.0, 16.0}}, .separator = ','});
+    add_progress(command);
     command.footer(
         "LIST is separated by commas. The first standard config takes 20 seconds, because 3D LUTs "
         "are fitted and kept in ~/.cache/tonewright. The next ones take 7 seconds.\n"

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -19,6 +20,14 @@ struct MessageOptions {
     bool is_strict = false;
     bool is_quiet = false;
     bool is_verbose = false;
+    /// `bar`, `none`, `json` or `openjd`. @see progress.h
+    std::string progress = "bar";
+    /// The last per cent that went to standard output, for the program and its modules; -1: none.
+    std::shared_ptr<int> percent = std::make_shared<int>(-1);
+    /// True if standard output gets lines of progress.
+    [[nodiscard]] bool reports_progress() const {
+        return progress == "json" || progress == "openjd";
+    }
     /// The subcommand, and its options: `--size`.
     std::string command = {};
     std::set<std::string> options = {};

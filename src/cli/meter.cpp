@@ -16,6 +16,8 @@ void add_meter(CommandLine& program) {
                      {.is_required = true});
     command.title("Output");
     command.add_flag("--json", &options->json, "print all figures with all digits, as JSON");
+    add_progress(command);
+    command.exclude("--progress", {"--json"});
     command.title("Exposure");
     command.add("--method", "NAME", &options->metering.method,
                 "method: log-average, histogram, mean or max",

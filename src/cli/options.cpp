@@ -16,6 +16,7 @@
 #include "base/strings.h"
 #include "cli/help_text.h"
 #include "cli/messages.h"
+#include "cli/progress.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -312,6 +313,7 @@ void Command::action(std::function<int()> run, std::set<std::string>* given) con
             if (given && option->count() > 0) given->insert(option->get_name());
         }
         *exit_code = run();
+        if (*exit_code == 0) finish_progress();
     });
 }
 

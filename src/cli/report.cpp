@@ -7,10 +7,10 @@
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
-#include "cli/elapsed_line.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "cli/progress.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
 #include "shader_runs/shader_run.h"
@@ -46,7 +46,7 @@ int run_report(const Options& options) {
     const ResultLine line;
     print_opencolorio_messages();
     const std::string page = [&] {
-        const ElapsedLine elapsed("report");
+        Progress progress("report");
         ReportRequest request;
         request.operators = operators_of(options);  // names are checked first
         require_writable_file(options.file);
@@ -64,6 +64,7 @@ int run_report(const Options& options) {
             add_shader_runs(verify, {"glsl-es"});
             return verify.shaders;
         };
+        request.progress = progress.listener().progress;
         request.cache_folder = user_cache_folder();
         return make_report(request);
     }();
@@ -96,6 +97,7 @@ void add_report(CommandLine& program) {
     add_picture_choice(command, options->picture.choice);
     command.title("Contents");
     command.add_flag("--no-parity", &options->no_parity, "leave out the parity table");
+    add_progress(command);
     command.footer(
         "The page is one file. It opens without a server and sends no data. It runs the exported "
         "GLSL ES on the embedded pictures, and on pictures that you drop on it.\n"

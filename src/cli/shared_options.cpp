@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/shared_options.h"
+
+#include "cli/messages.h"
 #include "cli/suggestions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -67,6 +69,13 @@ void add_lut_options(const Command& command, LutOptions& options,
     command.add("--interpolation", "NAME", &options.interpolation,
                 "between grid points: tetrahedral, trilinear, or auto, as the file says",
                 {.suggest = one_of({"tetrahedral", "trilinear", "auto"}), .needs = {"--lut"}});
+}
+
+void add_progress(const Command& command) {
+    command.title("Output");
+    command.add("--progress", "FORM", &message_options().progress,
+                "`bar` on a terminal, `none`, or lines on standard output: `json`, `openjd`",
+                {.choices = {"bar", "none", "json", "openjd"}});
 }
 
 void add_resize(const Command& command, std::string& resize) {

@@ -39,6 +39,8 @@ void add_lut_input_options(const Command& command, LutOptions& options);
 void add_lut_options(const Command& command, LutOptions& options,
                      const std::vector<std::string>& others);
 
+/// --progress, under a title of its own. @see progress.h
+void add_progress(const Command& command);
 /// --resize.
 void add_resize(const Command& command, std::string& resize);
 /// --layer, --subimage, --max-pixels.

@@ -8,11 +8,12 @@
 #include <optional>
 
 #include "base/strings.h"
-#include "cli/elapsed_line.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "cli/progress.h"
+#include "cli/shared_options.h"
 #include "cli/suggestions.h"
 #include "shader_runs/shader_run.h"
 #include "tasks/json.h"
@@ -150,15 +151,15 @@ int run_verify(Options& options) {
     const bool is_table = !options.json && !options.summary;
     // Rows on the terminal show the progress.
     const int terminal = is_table && ::isatty(STDOUT_FILENO) != 0 ? -1 : STDERR_FILENO;
-    std::optional<ElapsedLine> line(std::in_place, "verify", terminal);
+    std::optional<Progress> line(std::in_place, "verify",
+                                 ProgressFacts{.unit = "views", .terminal = terminal});
+    verify_options.progress = line->listener().progress;
     const std::vector<NotExecuted> not_executed = add_shader_runs(verify_options, options.shaders);
     bool has_heading = false;  // only after the names have been checked
     VerifyListener listener;
     listener.on_lint = [&](const std::vector<LintFinding>& findings) {
         if (options.json) return;
-        line.reset();
-        print_lint(findings);
-        line.emplace("verify", terminal);
+        line->print_over([&] { print_lint(findings); });
     };
     listener.on_row = [&](const ParityRow& row) {
         if (!is_table) return;
@@ -219,6 +220,8 @@ void add_verify(CommandLine& program) {
     command.title("Output");
     command.add_flag("--summary", &options->summary, "print one line for each operator");
     command.add_flag("--json", &options->json, "print JSON");
+    add_progress(command);
+    command.exclude("--progress", {"--json"});
     command.exclude("--lut", {"--display", "--input", "--config", "--picture", "--quick",
                               "--summary", "--best-target", "--no-gpu", "--shaders"});
     command.footer(

@@ -592,6 +592,10 @@ void PictureWriter::write_fitted(const ImageBuf& rows) {
     check_disk();
     if (!written) fail(problem_of_library(rows.has_error() ? rows.geterror() : out_->geterror()));
     rows_written_ += part.height();
+    if (options_.progress) {
+        options_.progress(static_cast<std::size_t>(rows_written_),
+                          static_cast<std::size_t>(out_->spec().height));
+    }
     check_blocks();
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <mutex>
 
 #include "base/format_number.h"
 #include "base/strings.h"
@@ -380,9 +382,18 @@ std::vector<ShippedLut> plan_shipped_luts(const std::string& application) {
     return luts;
 }
 
-std::vector<ShippedLut> bake_shipped_luts(const std::string& application) {
+std::vector<ShippedLut> bake_shipped_luts(
+    const std::string& application,
+    const std::function<void(std::size_t done, std::size_t total)>& progress) {
     std::vector<ShippedLut> luts = plan_shipped_luts(application);
-    in_parallel(luts.size(), 0, [&](std::size_t i) { bake_shipped_lut(luts[i]); });
+    std::mutex mutex;
+    std::size_t done = 0;
+    in_parallel(luts.size(), 0, [&](std::size_t i) {
+        bake_shipped_lut(luts[i]);
+        const std::lock_guard lock(mutex);
+        ++done;
+        if (progress) progress(done, luts.size());
+    });
     return luts;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -62,9 +64,11 @@ TONEWRIGHT_API void bake_shipped_lut(ShippedLut& planned);
 /// Bakes all of them, in the order of lut_preset_sets(). The same on every run, for any number of
 /// threads.
 /// @param application  only its preset set; empty: all sets
+/// @param progress     receives the number of baked LUTs and of all, from one thread at a time
 /// @throws Error  the application has no set
 [[nodiscard]] TONEWRIGHT_API std::vector<ShippedLut> bake_shipped_luts(
-    const std::string& application = {});
+    const std::string& application = {},
+    const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 /// README.md and MANIFEST.csv, for LUTs that have contents.
 [[nodiscard]] TONEWRIGHT_API std::vector<GeneratedFile> describe_shipped_luts(

@@ -98,8 +98,10 @@ class PageContents {
         for (const std::string& path : names)
             add_picture(path);
         Json operators = Json::array();
-        for (std::size_t i = 0; i < operators_.size(); ++i)
+        for (std::size_t i = 0; i < operators_.size(); ++i) {
             operators.push_back(operator_json(i));
+            tell_progress(i + 1);
+        }
         const Json page = {{"version", TONEWRIGHT_VERSION},
                            {"operators", operators},
                            {"pictures", pictures_},
@@ -115,6 +117,12 @@ class PageContents {
     }
 
   private:
+    void tell_progress(std::size_t done) const {
+        // Local operators have nothing to verify.
+        const std::size_t views =
+            request_.has_parity ? operators_.size() - local_operators_.size() : 0;
+        if (request_.progress) request_.progress(done, operators_.size() + views);
+    }
     void add_picture(const std::string& path) {
         ReportPicture picture = request_.read_picture(path, local_operators_);
         const std::string name = fmt::format("picture{}", pictures_.size());
@@ -317,6 +325,9 @@ class PageContents {
                      [](const ResolvedOperator& op) { return !op.op->is_local(); });
         request.options.only_best_target = true;
         request.options.cache_folder = request_.cache_folder;
+        request.options.progress = [this](std::size_t done, std::size_t) {
+            tell_progress(operators_.size() + done);
+        };
         if (request_.shader_runs) request.options.shaders = request_.shader_runs();
         return all_to_json(verify(request).rows);
     }

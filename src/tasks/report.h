@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ struct ReportRequest {
     std::function<std::vector<LanguageRun>()> shader_runs = {};
     /// @see LowerOptions; empty: nothing is stored.
     std::string cache_folder = {};
+    /// Receives the number of operators that were measured on the pictures, and of verified views.
+    std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
 /// All operators, also local ones.

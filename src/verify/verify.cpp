@@ -391,8 +391,10 @@ class Verification {
             fresh.emplace(views_of_operators(views), options_.cache_folder);
             config_ = read_config(path_of_config(fresh->folder()));
         }
-        for (const View& view : views)
-            add_view(view);
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            add_view(views[i]);
+            if (options_.progress) options_.progress(i + 1, views.size());
+        }
         return std::move(rows_);
     }
 

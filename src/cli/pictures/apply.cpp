@@ -18,14 +18,13 @@
 #include "base/atomic_file.h"
 #include "base/problem.h"
 #include "base/strings.h"
-#include "cli/elapsed_line.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
 #include "cli/pictures/picture_messages.h"
-#include "cli/pictures/progress_bar.h"
 #include "cli/pictures/requests.h"
 #include "cli/pictures/standard_streams.h"
+#include "cli/progress.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
 #include "image/spec_conversion.h"
@@ -217,6 +216,8 @@ int apply_lut(const ApplyOptions& options, const ApplyFiles& files) {
     const TonemapOptions light = tonemap_options_of(options, write);
     check_overwriting(files.files, options.is_in_place);
     std::optional<LutOptions> stated;  // the first picture finds the input, and says so
+    double done = 0;                   // percent
+    const double each = 100.0 / static_cast<double>(files.files.size());
     const auto apply_to = [&](const FrameFiles& file) {
         PictureMessages messages({}, file.out);
         const LutSource source =
@@ -244,8 +245,12 @@ int apply_lut(const ApplyOptions& options, const ApplyFiles& files) {
         };
         {
             const QuietStderr quiet;
+            Progress progress("apply",
+                              {.terminal = quiet.before(), .from = done, .to = done + each});
+            request.write.progress = progress.listener().progress;
             write_through_lut(source, file, request);
         }
+        done += each;
         messages.print();
     };
     if (files.is_single) {
@@ -375,12 +380,20 @@ void tell_default_operator(const ApplyOptions& options) {
                               kDefaultOperator, find_operator(kDefaultOperator).view));
 }
 
+/// Metering is the first part of the work: it reads the pictures, and writes none.
+constexpr double kMetered = 30;  // percent
+double begin_of_writing(const ExposureRequest& exposure) {
+    return exposure.rule || exposure.takes_sequence ? kMetered : 0;
+}
+
 void run(const Tonemapper& tonemapper, std::vector<FrameFiles>& files, SequenceOptions sequence,
-         const ApplyOptions& options, PictureMessages& messages, const char* what) {
+         const ApplyOptions& options, PictureMessages& messages, const char* unit, double from) {
     {
         const QuietStderr quiet;
-        ProgressBar bar(quiet.before(), files.size(), what);
-        sequence.done = [&](const FrameFiles& file) { bar.add(!file.is_skipped); };
+        Progress progress(
+            "apply",
+            {.unit = unit, .total = files.size(), .terminal = quiet.before(), .from = from});
+        sequence.done = [&](const FrameFiles& file) { progress.add(!file.is_skipped); };
         tonemap_pictures(tonemapper, files, sequence, options.picture.timeout);
     }
     messages.print();
@@ -398,18 +411,21 @@ int apply_to_shot(Tonemapper& tonemapper, const ApplyOptions& options, const Fra
                            .skips_existing = options.frames.skip_existing,
                            .is_in_place = options.is_in_place});
     {
-        std::optional<ProgressBar> bar(std::in_place, quiet->before(), shot.frames.size());
+        std::optional<Progress> progress;
+        if (begin_of_writing(exposure) > 0) {
+            progress.emplace("apply", ProgressFacts{.unit = "metered frames",
+                                                    .terminal = quiet->before(),
+                                                    .to = kMetered});
+        }
         const Listener listener = {.warn =
                                        [&](const std::string& text) {
-                                           bar.reset();
+                                           progress.reset();
                                            quiet.reset();
                                            warn(text);
                                        },
                                    .progress =
-                                       [&](std::size_t, std::size_t count) {
-                                           if (!bar) return;
-                                           bar->expect(count);
-                                           bar->add(true);
+                                       [&](std::size_t done, std::size_t total) {
+                                           if (progress) progress->set(done, total);
                                        }};
         meter_frames(tonemapper, shot, pattern.in, exposure, listener);
     }
@@ -419,7 +435,7 @@ int apply_to_shot(Tonemapper& tonemapper, const ApplyOptions& options, const Fra
     messages.attach_to(sequence.write);
     sequence.skip_existing = options.frames.skip_existing;
     sequence.jobs = options.frames.jobs;
-    run(tonemapper, shot.frames, sequence, options, messages, "frames");
+    run(tonemapper, shot.frames, sequence, options, messages, "frames", begin_of_writing(exposure));
     return print_summary(shot, options);
 }
 
@@ -427,14 +443,23 @@ int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
                    std::vector<FrameFiles>& files, SequenceOptions sequence) {
     require_writable_folder(options.output);
     const ExposureRequest exposure = exposure_request_of(options, tonemapper.options());
-    if (exposure.rule)
-        warn_of_histograms(meter_files(files, exposure), *exposure.rule, {.warn = warn});
+    if (exposure.rule) {
+        const std::vector<MeteredPicture> metered = [&] {
+            const QuietStderr quiet;
+            Progress progress("apply", {.unit = "metered pictures",
+                                        .total = files.size(),
+                                        .terminal = quiet.before(),
+                                        .to = kMetered});
+            return meter_files(files, exposure, {.progress = progress.listener().progress});
+        }();
+        warn_of_histograms(metered, *exposure.rule, {.warn = warn});
+    }
     tell_default_operator(options);
     PictureMessages messages;
     messages.attach_to(sequence.read);
     messages.attach_to(sequence.write);
     sequence.names_pictures = true;
-    run(tonemapper, files, sequence, options, messages, "pictures");
+    run(tonemapper, files, sequence, options, messages, "pictures", begin_of_writing(exposure));
     const std::size_t failed = print_failures(files);
     const std::size_t written = files.size() - failed;
     std::string text = fmt::format("{} picture{}: {} written", files.size(),
@@ -459,7 +484,9 @@ int apply_to_picture(Tonemapper& tonemapper, const ApplyOptions& options,
     std::vector<MeteredPicture> metered;
     try {
         const QuietStderr quiet;
-        const ElapsedLine line("apply", quiet.before());
+        Progress progress("apply",
+                          {.terminal = quiet.before(), .from = begin_of_writing(exposure)});
+        sequence.write.progress = progress.listener().progress;
         if (exposure.rule) metered = meter_files(files, exposure);
         if (options.has_legend) {
             if (file.exposure_stops) tonemapper = tonemapper.with_exposure(*file.exposure_stops);

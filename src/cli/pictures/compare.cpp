@@ -11,6 +11,7 @@
 #include "cli/pictures/commands.h"
 #include "cli/pictures/picture_messages.h"
 #include "cli/pictures/requests.h"
+#include "cli/progress.h"
 #include "image/contact_sheet.h"
 #include "ocio/model.h"
 #include "picture/picture_error.h"
@@ -73,6 +74,7 @@ void run_compare(const CompareOptions& options) {
         Comparison comparison(std::move(request));
         OIIO::ImageBuf picture = read_picture(options.in, options.picture, options.light.input);
         const QuietStderr quiet;
+        const Progress progress("compare", {.terminal = quiet.before()});
         comparison.write(std::move(picture));
     } catch (const PictureError& e) {
         throw FileError(within("compare: " + options.in, e.problem()));

@@ -15,6 +15,7 @@
 #include "cli/pictures/commands.h"
 #include "cli/pictures/picture_messages.h"
 #include "cli/pictures/requests.h"
+#include "cli/progress.h"
 #include "image/picture_file.h"
 #include "plot/terminal_plot.h"
 #include "tasks/json.h"
@@ -167,9 +168,12 @@ void print_table(const std::vector<MeteredFrame>& all, const MeterCommandOptions
 std::vector<MeteredFrame> meter_all(const MeterCommandOptions& options, const MeterRequest& request,
                                     const ExposureRule& rule) {
     const QuietStderr quiet;
+    Progress progress("meter", {.unit = options.frames.empty() ? "pictures" : "frames",
+                                .terminal = quiet.before()});
+    const Listener listener = {.progress = progress.listener().progress};
     if (options.frames.empty()) {
         std::vector<MeteredFrame> all;
-        for (MeteredPicture& picture : meter_pictures(options.in, request))
+        for (MeteredPicture& picture : meter_pictures(options.in, request, listener))
             all.push_back({std::move(picture)});
         return all;
     }
@@ -180,7 +184,8 @@ std::vector<MeteredFrame> meter_all(const MeterCommandOptions& options, const Me
                         options.frames, options.in.size()));
     }
     const Adaptation adaptation = adaptation_of(options.shot);
-    const MeteredShot shot = meter_shot(options.in.front(), parse_frames(options.frames), request);
+    const MeteredShot shot =
+        meter_shot(options.in.front(), parse_frames(options.frames), request, listener);
     return frames_of(shot, rule, options.metering.delta,
                      options.shot.adapt ? &adaptation : nullptr);
 }

@@ -6,9 +6,9 @@
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
-#include "cli/elapsed_line.h"
 #include "cli/pictures/commands.h"
 #include "cli/pictures/picture_messages.h"
+#include "cli/progress.h"
 #include "image/lut_picture.h"
 #include "image/shipped_pictures.h"
 #include "lut/shipped_set.h"
@@ -48,8 +48,8 @@ void write_plot(const CurvePlot& plot, const std::string& path, int width) {
 
 void write_shipped_luts(const std::string& folder, const std::string& application) {
     require_writable_folder(folder);
-    const ElapsedLine line("bake --all");
-    std::vector<ShippedLut> luts = bake_shipped_luts(application);
+    Progress progress("bake --all", {.unit = "LUTs"});
+    std::vector<ShippedLut> luts = bake_shipped_luts(application, progress.listener().progress);
     std::vector<GeneratedFile> files = make_shipped_files(luts);
     for (GeneratedFile& file : describe_shipped_luts(luts)) {
         if (file.path.ends_with(".md")) file.contents = render(file.contents, command_style());

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cli/messages.h"
 #include "tasks/pictures/streams.h"
 #include "tonewright/image_io.h"
 
@@ -32,6 +33,11 @@ StandardStreams::StandardStreams(ApplyOptions& options) {
             throw Error(
                 "apply: --format is missing; expected png, exr, ppm, jpg or another extension with "
                 "- as the output");
+        }
+        if (message_options().reports_progress()) {
+            throw Error(
+                fmt::format("apply: --progress is {}; expected bar or none with - as the output",
+                            message_options().progress));
         }
         if (::isatty(STDOUT_FILENO) != 0)
             throw Error("apply: OUT is -, a terminal; expected a pipe or a file");

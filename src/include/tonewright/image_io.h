@@ -4,6 +4,7 @@
 #include <OpenImageIO/imagebuf.h>
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -112,6 +113,8 @@ struct WriteOptions {
     /// Receives warnings about the file, in one line without its name, before the file gets its
     /// final name. An exception stops the writing. @see render
     std::function<void(const std::string&)> warn = {};
+    /// Receives the number of written rows and of all rows, after some of them, from one thread.
+    std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
 /// Writes a picture under a temporary name beside `path`

@@ -60,6 +60,8 @@ struct VerifyOptions {
     std::vector<float> picture;
     /// Folder that keeps fitted 3D LUTs, at most 256 MiB; empty: nothing is stored.
     std::string cache_folder;
+    /// Receives the number of compared views and of all views.
+    std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
 /// Errors of one backend of one view against the double reference, in display code values.

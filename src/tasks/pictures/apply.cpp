@@ -78,6 +78,7 @@ void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& fi
         one.jobs = 1;
         one.nthreads = threads_each;
         one.done = {};
+        one.write.progress = {};  // the program counts files
         KeptMessages messages;
         messages.keep(one.write, one.read);
         std::vector<FrameFiles> files_of_one = {files[i]};

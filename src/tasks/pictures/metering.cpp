@@ -197,12 +197,12 @@ Json to_json(const MeteredFrame& metered, const ExposureRule& rule, double delta
 }
 
 std::vector<MeteredPicture> meter_files(std::vector<FrameFiles>& files,
-                                        const ExposureRequest& request) {
+                                        const ExposureRequest& request, const Listener& listener) {
     std::vector<std::string> paths;
     paths.reserve(files.size());
     for (const FrameFiles& file : files)
         paths.push_back(file.in);
-    std::vector<MeteredPicture> metered = meter_pictures(paths, request.meter);
+    std::vector<MeteredPicture> metered = meter_pictures(paths, request.meter, listener);
     for (std::size_t i = 0; i < files.size(); ++i) {
         // If there are several, tone mapping reports the reason.
         if (files.size() == 1 && metered[i].problem) throw_problem(*metered[i].problem);

@@ -123,7 +123,8 @@ struct ExposureRequest {
 /// that cannot be metered get their problem.
 /// @throws FileError  the only file cannot be metered
 std::vector<MeteredPicture> meter_files(std::vector<FrameFiles>& files,
-                                        const ExposureRequest& request);
+                                        const ExposureRequest& request,
+                                        const Listener& listener = {});
 
 /// Meters a shot and sets the exposures of its frames and the tonemapper's statistics. With a
 /// timeout, frames that cannot be metered get their problem.

@@ -233,6 +233,21 @@ TEST_F(TonemapFile, OpenExrKeepsThePixelType) {
     EXPECT_EQ(written(half, "a.tif"), TypeDesc(TypeDesc::FLOAT));
 }
 
+TEST_F(TonemapFile, ProgressCountsRows) {
+    const std::string in = folder_ / "a.exr";
+    put(spec_of({"R", "G", "B"}), in);
+    std::vector<std::size_t> rows;
+    WriteOptions write;
+    write.progress = [&](std::size_t done, std::size_t total) {
+        EXPECT_EQ(total, std::size_t{kHeight});
+        rows.push_back(done);
+    };
+    tonemap_in_batches(Tonemapper({.op = resolve_picture_operator("hable")}), in, folder_ / "b.exr",
+                       write, {}, 3, kSmallBatch);
+    // Batches of 64 rows: 200 are three and a rest.
+    EXPECT_EQ(rows, (std::vector<std::size_t>{64, 128, 192, 200}));
+}
+
 TEST_F(TonemapFile, GrayStaysGrayOrBecomesColor) {
     const std::string in = folder_ / "a.exr";
     put(spec_of({"Y"}, TypeDesc::FLOAT), in);

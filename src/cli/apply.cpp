@@ -22,7 +22,7 @@ void add_frame_options(const Command& command, FrameOptions& options) {
                 "missing input frames: `error`, `skip`, or `hold` (use the last earlier frame)",
                 {.suggest = one_of({"error", "skip", "hold"}), .needs = {"--frames"}});
     command.add("--jobs", "N", &options.jobs,
-                "number of frames processed at a time; 0 is the number of threads",
+                "frames at a time, each with about 40 MB; 0 is the number of threads",
                 {.range = {{0, 256}}, .needs = {"--frames"}});
 }
 

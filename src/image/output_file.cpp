@@ -1,16 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/output_file.h"
 
+#include <sys/types.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-OutputFile::OutputFile(AtomicFile& target) : IOProxy(target.path().string(), Write) {
-    const int file = target.create();
-    if (file >= 0) file_ = ::fdopen(file, "wb");
+int OpenFile::patch(std::size_t place, std::string_view bytes) const {
+    while (!bytes.empty()) {
+        const ::ssize_t written =
+            ::pwrite(file_, bytes.data(), bytes.size(), static_cast<::off_t>(place));
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return written < 0 ? errno : EIO;
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+        place += static_cast<std::size_t>(written);
+    }
+    return 0;
+}
+
+int OpenFile::close() {
+    if (file_ < 0) return 0;
+    return ::close(std::exchange(file_, -1)) == 0 ? 0 : errno;
+}
+
+OutputFile::OutputFile(int file, const std::string& name)
+    : IOProxy(name, Write), file_(::fdopen(file, "wb")) {
     if (!file_) {
         errno_ = errno;
+        ::close(file);
         return;
     }
     std::setvbuf(file_, nullptr, _IOFBF, std::size_t{1} << 20);  // some write byte by byte

@@ -11,17 +11,37 @@
 #include <string_view>
 #include <utility>
 
-#include "base/atomic_file.h"
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+/// A file that is open for writing.
+class OpenFile {
+  public:
+    explicit OpenFile(int file) : file_(file) {}
+    ~OpenFile() { (void)close(); }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+
+    /// Replaces bytes that were written.
+    /// @returns  0 or an errno
+    [[nodiscard]] int patch(std::size_t place, std::string_view bytes) const;
+    /// @returns  0 or an errno
+    [[nodiscard]] int close();
+    /// Gives the descriptor to another owner.
+    [[nodiscard]] int release() { return std::exchange(file_, -1); }
+
+  private:
+    int file_;
+};
 
 /// The file of OIIO's writers. They do not check whether their last bytes reached the disk (PNG:
 /// none of them), and libjpeg ends the process after a failed write. This file therefore accepts
 /// everything, and remembers the first error.
 class OutputFile final : public OIIO::Filesystem::IOProxy {
   public:
-    explicit OutputFile(AtomicFile& target);
+    /// @param file  a descriptor, which it closes
+    OutputFile(int file, const std::string& name);
     ~OutputFile() override;
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;

@@ -26,6 +26,8 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 class LightLevelMeter;
+class RowWriter;
+class OpenFile;
 class OutputFile;
 struct FormatLimits;
 
@@ -204,6 +206,11 @@ class TONEWRIGHT_API PictureWriter {
     /// writes no more of this call, and takes later rows from before the given ones.
     void check_blocks() const;
     [[nodiscard]] OIIO::ImageSpec plan(const OIIO::ImageSpec& picture);
+    /// Opens the writer of our own for a new, empty file, if there is one for the picture.
+    /// @param chunks  of a PNG file, after its header
+    [[nodiscard]] std::unique_ptr<RowWriter> own_writer(int file, const OIIO::ImageSpec& spec,
+                                                        const std::string& chunks) const;
+    void open_by_openimageio(const OIIO::ImageSpec& spec, const std::string& chunks);
     void plan_alpha(OIIO::ImageSpec& spec);
     void plan_channels(OIIO::ImageSpec& spec, const FormatLimits& limits);
     void plan_window(OIIO::ImageSpec& spec, const OIIO::ImageSpec& picture,
@@ -231,6 +238,7 @@ class TONEWRIGHT_API PictureWriter {
 
     std::string path_;
     WriteOptions options_;
+    unsigned threads_ = 1;              // of a writer of ours
     std::vector<int> channels_;         // to write; empty: all
     int alpha_ = -1;                    // of those that are written
     bool watches_cover_ = false;        // warns if alpha is 0 everywhere
@@ -250,9 +258,11 @@ class TONEWRIGHT_API PictureWriter {
     int rows_of_block_ = 0;                          // of an OpenEXR file, else 0
     std::unique_ptr<LightLevelMeter> light_levels_;  // of a PNG file in PQ or HLG, else null
     std::size_t light_levels_place_ = 0;             // of their chunk in the file
-    // The order matters: at its end, the writer writes to the proxy, which writes to the file.
+    // The order matters: at its end, the writer writes to the file.
     std::unique_ptr<AtomicFile> temporary_;
-    std::unique_ptr<OutputFile> proxy_;  // null: OIIO opens the file itself
+    std::unique_ptr<OutputFile>
+        proxy_;                       // of OpenImageIO's writers that do not open files themselves
+    std::unique_ptr<OpenFile> file_;  // of a writer of ours, else null
     std::unique_ptr<OIIO::ImageOutput> out_;
 };
 

@@ -20,8 +20,10 @@
 #include "image/heif_reader.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
+#include "image/row_input.h"
 #include "image/source_picture.h"
 #include "image/spec_conversion.h"
+#include "picture/exr_reader.h"
 #include "picture/header_tags.h"
 #include "picture/layers.h"
 #include "picture/picture_description.h"
@@ -221,6 +223,8 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     // reader understands: "shot.exr.tonewright?op=hable".
     if (const std::string why = why_no_file(path); !why.empty()) cannot_read(path, why);
     if (is_heif(path)) return open_heif(path, max_pixels);
+    if (std::unique_ptr<RowReader> rows = open_exr(path, 0))
+        return row_input(std::move(rows), "openexr");
     check_jpeg2000_size(path, max_pixels);
     // OpenImageIO multiplies straight color by alpha in the file's type: in 8 bits, little is left
     // of color with low alpha.

@@ -25,14 +25,18 @@
 #include "base/system_files.h"
 #include "image/output_file.h"
 #include "image/picture_file.h"
+#include "image/row_output.h"
 #include "image/source_picture.h"
 #include "image/spec_conversion.h"
+#include "image/tonemap_file.h"
 #include "image/written_picture.h"
 #include "picture/color_tags.h"
 #include "picture/compression.h"
+#include "picture/exr_writer.h"
 #include "picture/format_limits.h"
 #include "picture/light_levels.h"
 #include "picture/png_chunks.h"
+#include "picture/png_writer.h"
 #include "picture/source_date.h"
 #include "picture/source_pixels.h"
 #include "tonewright/error.h"
@@ -68,7 +72,9 @@ OIIO::TypeDesc openexr_type(const OIIO::TypeDesc& source) {
 }
 
 PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int nthreads)
-    : path_(path), options_(std::move(options)) {
+    : path_(path),
+      options_(std::move(options)),
+      threads_(static_cast<unsigned>(thread_count(nthreads))) {
     temporary_ = std::make_unique<AtomicFile>(path);
     if (!temporary_->refusal().empty()) fail(temporary_->refusal());
     const fs::path& target = temporary_->target();
@@ -308,27 +314,51 @@ void PictureWriter::open(const ImageSpec& picture) {
                        OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(color.icc.size())),
                        color.icc.data());
     }
+    std::string chunks;
+    if (!color.chunk.empty()) {
+        // The levels are known at the end: until then, a chunk without light has their place.
+        chunks = color.chunk + clli_chunk({});
+        light_levels_place_ = kAfterPngHeader + color.chunk.size();
+        light_levels_ =
+            std::make_unique<LightLevelMeter>(find_display(tagged_color(picture_spec(spec))->name));
+    }
+    // Opens this file, and not a link that another program put there.
+    const int file = temporary_->create();
+    if (file < 0) fail(problem_of_system(errno));
+    file_ = std::make_unique<OpenFile>(file);
+    if (std::unique_ptr<RowWriter> rows = own_writer(file, spec, chunks)) {
+        out_ = row_output(std::move(rows), format() == "png" ? "png" : "openexr");
+    } else {
+        open_by_openimageio(spec, chunks);
+    }
+    warn_of_limits(spec, color.missing);
+    if (const std::string text = cut_off(picture); options_.warn && !text.empty())
+        options_.warn(text);
+}
+
+std::unique_ptr<RowWriter> PictureWriter::own_writer(int file, const ImageSpec& spec,
+                                                     const std::string& chunks) const {
+    try {
+        if (format() == "openexr") return create_exr(file, picture_spec(spec), threads_);
+        if (format() == "png") return create_png(file, picture_spec(spec), threads_, chunks);
+    } catch (const FileError& e) {
+        fail(e.problem());
+    }
+    return nullptr;
+}
+
+void PictureWriter::open_by_openimageio(const ImageSpec& spec, const std::string& chunks) {
     // libtiff reads its own directories again if there is an EXIF directory (as in a picture tagged
     // sRGB), and a proxy for writing cannot be read: the file would lack its first directory.
     std::string name = temporary_->path().string();
     if (out_->supports("ioproxy") && format() != "tiff") {
-        proxy_ = std::make_unique<OutputFile>(*temporary_);
+        proxy_ = std::make_unique<OutputFile>(file_->release(), name);
         check_disk();
-        if (!color.chunk.empty()) {
-            // The levels are known at the end: until then, a chunk without light has their place.
-            proxy_->insert(kAfterPngHeader, color.chunk + clli_chunk({}));
-            light_levels_place_ = kAfterPngHeader + color.chunk.size();
-            light_levels_ = std::make_unique<LightLevelMeter>(
-                find_display(tagged_color(picture_spec(spec))->name));
-        }
+        if (!chunks.empty()) proxy_->insert(kAfterPngHeader, chunks);
         out_->set_ioproxy(proxy_.get());
         name = fs::path(path_).filename().string();
-    } else {
-        // Opens this file, and not a link that another program put there.
-        const int file = temporary_->create();
-        if (file < 0) fail(problem_of_system(errno));
-        ::close(file);
     }
+    file_.reset();
     const bool is_open = [&] {
         const FileCreation creation;  // the writer may open the file by its name
         return out_->open(name, spec);
@@ -338,9 +368,6 @@ void PictureWriter::open(const ImageSpec& picture) {
         rows_of_block_ = rows_of_block(out_->spec().get_string_attribute("compression", "zip"));
         proxy_->begin_blocks();
     }
-    warn_of_limits(spec, color.missing);
-    if (const std::string text = cut_off(picture); options_.warn && !text.empty())
-        options_.warn(text);
 }
 
 void PictureWriter::warn_of_limits(const ImageSpec& requested, const std::string& missing) const {
@@ -617,16 +644,22 @@ void PictureWriter::finish() {
     const ImageSpec requested = out_->spec();
     if (!out_->close()) fail(problem_of_library(out_->geterror()));
     out_.reset();  // some write their last bytes only now
-    if (light_levels_) proxy_->patch(light_levels_place_, clli_chunk(light_levels_->levels()));
-    const bool has_proxy = proxy_ != nullptr;
-    if (has_proxy) {
-        if (const int error = proxy_->finish()) fail(problem_of_system(error));
+    if (light_levels_) {
+        const std::string levels = clli_chunk(light_levels_->levels());
+        if (proxy_) {
+            proxy_->patch(light_levels_place_, levels);
+        } else if (const int error = file_->patch(light_levels_place_, levels)) {
+            fail(problem_of_system(error));
+        }
     }
+    const bool is_opened_by_name = !proxy_ && !file_;
+    if (const int error = proxy_ ? proxy_->finish() : file_ ? file_->close() : 0)
+        fail(problem_of_system(error));
     const std::string fault = fault_of({.path = temporary_->path().string(),
                                         .spec = requested,
                                         .format = file_format,
                                         .is_avif = is_avif,
-                                        .is_opened_by_name = !has_proxy,
+                                        .is_opened_by_name = is_opened_by_name,
                                         .bits = options_.bits,
                                         .pixels = options_.verifies ? &kept_ : nullptr});
     if (!fault.empty()) fail(fault);

@@ -198,6 +198,7 @@ class ExrReader final : public RowReader {
     ExrReader(File file, std::vector<ExrPart> parts, unsigned threads)
         : file_(std::move(file)), parts_(std::move(parts)), threads_(threads) {}
 
+    void use_threads(unsigned count) override { threads_ = count; }
     [[nodiscard]] int picture_count() const override { return static_cast<int>(parts_.size()); }
     [[nodiscard]] const PictureSpec& spec(int picture) const override {
         return parts_[static_cast<std::size_t>(picture)].spec;

@@ -16,6 +16,8 @@ class RowReader {
     RowReader(const RowReader&) = delete;
     RowReader& operator=(const RowReader&) = delete;
 
+    /// @param count  threads that decode; 0: as many as are idle
+    virtual void use_threads(unsigned count) = 0;
     [[nodiscard]] virtual int picture_count() const = 0;
     /// Size, channels and attributes as OpenImageIO's reader gives them.
     [[nodiscard]] virtual const PictureSpec& spec(int picture) const = 0;

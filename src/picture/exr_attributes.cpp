@@ -175,7 +175,7 @@ void put_value(Header& header, std::string_view name, const PictureAttribute& at
     put(header, name, "floatvector", bytes);
 }
 
-/// What OpenImageIO's writer leaves out by the name.
+/// True for a name that OpenImageIO's writer leaves out.
 bool is_left_out(const std::string& folded) {
     if (folded.starts_with("oiio:"))
         return folded != "oiio:constantcolor" && folded != "oiio:averagecolor" &&

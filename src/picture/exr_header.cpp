@@ -38,7 +38,7 @@ using ChannelPlace = std::tuple<std::string_view, std::size_t, std::string_view>
 constexpr std::array<std::string_view, 20> kColorOrder = {
     "r",     "red", "g",  "green", "b",  "blue", "y",  "real", "imag",  "a",
     "alpha", "ar",  "ra", "ag",    "ga", "ab",   "ba", "z",    "depth", "zback"};
-/// Of layers that hold a position or a normal.
+/// Channels of layers that hold a position or a normal.
 constexpr std::array<std::string_view, 21> kVectorOrder = {
     "r", "red",   "g",  "green", "b",  "blue", "x",  "y",  "z",     "real", "imag",
     "a", "alpha", "ar", "ra",    "ag", "ga",   "ab", "ba", "depth", "zback"};
@@ -239,7 +239,7 @@ void add_first_attributes(PictureSpec& spec, const exr_attribute_t* environment,
         spec.attribute("textureformat", is_cube ? "CubeFace Environment" : "LatLong Environment");
         if (!is_cube) spec.attribute("oiio:updirection", "y");
         spec.attribute("oiio:sampleborder", 1);
-        // Of a file with levels, the display window is a face.
+        // The display window of a file with levels is a face.
         if (is_cube && has_levels) spec.full_width = spec.full_height = spec.width;
     } else if (levels == EXR_TILE_MIPMAP_LEVELS) {
         spec.attribute("textureformat", "Plain Texture");

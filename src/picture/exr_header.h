@@ -30,7 +30,7 @@ struct ExrPart {
     bool is_tiled = false;
     int rows_of_block = 1;  // of tiles: their height
 
-    /// Of the file's channels.
+    /// Bytes of a pixel with the types of the file's channels.
     [[nodiscard]] std::size_t pixel_bytes() const;
 };
 

@@ -233,7 +233,7 @@ class ExrReader final : public RowReader {
                   ? exr_read_tile_chunk_info(file_.get(), picture, column, row, 0, 0, &chunk)
                   : exr_read_scanline_chunk_info(file_.get(), picture, y, &chunk));
         const std::int64_t left = std::int64_t{column} * spec.tile_width;
-        // What the library says of a tile's size is compared with what its place leaves.
+        // The size of a tile by the library is compared with the place that is left for it.
         if (chunk.height != std::min(part.rows_of_block, spec.y + spec.height - y) ||
             chunk.width != (part.is_tiled
                                 ? std::min<std::int64_t>(spec.tile_width, spec.width - left)

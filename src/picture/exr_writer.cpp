@@ -112,7 +112,7 @@ class BlockEncoder {
     Bytes run(int row_count, T type, const std::byte* rows) {
         if (compression_ == EXR_COMPRESSION_NONE) return planes_of(row_count, type, rows);
         Bytes packed = deflaters_.run(predicted(row_count, type, rows));
-        // As large as the pixels themselves: readers know by the size that these are stored.
+        // A block of the size of its pixels holds them as they are: readers know it by the size.
         return packed.empty() ? planes_of(row_count, type, rows) : packed;
     }
 

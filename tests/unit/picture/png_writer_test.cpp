@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/half_value.h"
-#include "image/png_chunks.h"
+#include "picture/png_chunks.h"
 #include "tonewright/error.h"
 #include "unit/folder.h"
 #include "unit/picture/written_files.h"

@@ -281,7 +281,7 @@ def test_apply_many(report, command, scratch, picture):
     report.check("apply without an operator is AgX, and says so", code == OK and "agx_blender (AgX)" in err
                  and (scratch / "two.png").read_bytes() == expected, err)
     report.check("apply -q without an operator says nothing", applied(picture, "-o", "two.png", "-q") == (OK, "", ""))
-    code, _, err = applied(picture, "-o", "two.png", "-v", "--operator", "agx", "--exposure", "1")
+    code, _, err = applied(picture, "-o", "two.png", "-v", "--operator", "agx_blender", "--exposure", "1")
     report.check("apply -v says what was done", code == OK and err.count("\n") == 1 and all(
         word in err for word in ("640 x 360 half", "lin_rec709", "two.png", "AgX (agx_blender)", "+1", "srgb")), err)
     for what, arguments, names in (

@@ -21,7 +21,7 @@ TEST(Compression, WhatAFormatLacksIsAnError) {
     EXPECT_EQ(refusal("jpeg", {.quality = 100, .subsampling = "4:2:2"}), "no error");
     EXPECT_EQ(refusal("hdr", {.compression = "zip"}),
               "a: compression is zip; expected none, because hdr has one method only");
-    EXPECT_NE(refusal("openexr", {.compression = "zips2"}).find("did you mean zip"),
+    EXPECT_NE(refusal("openexr", {.compression = "zipp"}).find("did you mean zip"),
               std::string::npos);
     EXPECT_EQ(refusal("openexr", {.compression = "dwaa:0"}),
               "a: compression is dwaa:0; expected a quality of 1 or more after the colon");

@@ -119,8 +119,8 @@ class Bench:
         frames = f"1001-{1000 + count}"
         lines = {"apply": self.apply(self.command, self.scratch / "shot.####.exr", self.scratch / "out.####.png", "uint8",
                                      more=["--frames", frames]),
-                 "view": ["oiiotool", "--frames", frames, *self.oiiotool(self.scratch / "shot.####.exr",
-                                                                         self.scratch / "view.####.png", "uint8", None, True)[1:]]}
+                 "view": ["oiiotool", "--frames", frames, *self.oiiotool(self.scratch / "shot.#.exr", self.scratch / "view.#.png",
+                                                                         "uint8", None, True)[1:]]}
         if self.before:
             lines["before"] = self.apply(self.before, self.scratch / "shot.####.exr", self.scratch / "before.####.png", "uint8",
                                          more=["--frames", frames])
@@ -129,7 +129,7 @@ class Bench:
     def start(self):
         source, out = resized(self.picture, 16, 16, "zip", self.scratch / "small.exr"), self.scratch / "small.png"
         lines = {"apply": self.apply(self.command, source, out, "uint8"), "copy": ["oiiotool", source, "-d", "uint8", "-o", out],
-                 "eval": [self.command, "eval", "hable", "0.18"]}
+                 "list": [self.command, "list", "hable"]}
         if self.before:
             lines["before"] = self.apply(self.before, source, out, "uint8")
         return take_turns(lines, 3 * self.runs)
@@ -169,7 +169,7 @@ def print_figures(results):
           ["program", "wall", "processor", "peak memory, MB"],
           [[name, *(f"{frames[name][f] / frames['count']:.3f}" for f in ("wall", "processor")), f"{frames[name]['memory']:.0f}"]
            for name in frames if name != "count"])
-    table("Start: 16x16 EXR to 8-bit PNG, and `eval` of one color", ["program", "wall, ms", "processor, ms", "peak memory, MB"],
+    table("Start: 16x16 EXR to 8-bit PNG, and `list hable`", ["program", "wall, ms", "processor, ms", "peak memory, MB"],
           [[name, *(f"{1000 * of[f]:.0f}" for f in ("wall", "processor")), f"{of['memory']:.0f}"]
            for name, of in results["start"].items()])
     table("Peak memory of 8000x6000, MB", ["to", "apply", "oiiotool, copy"],

@@ -223,8 +223,11 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     // reader understands: "shot.exr.tonewright?op=hable".
     if (const std::string why = why_no_file(path); !why.empty()) cannot_read(path, why);
     if (is_heif(path)) return open_heif(path, max_pixels);
-    if (std::unique_ptr<RowReader> rows = open_exr(path, 0))
-        return row_input(std::move(rows), "openexr");
+    // An application's settings are for OpenImageIO's reader, which has the levels of textures, too.
+    if (!config) {
+        if (std::unique_ptr<RowReader> rows = open_exr(path, 0))
+            return row_input(std::move(rows), "openexr");
+    }
     check_jpeg2000_size(path, max_pixels);
     // OpenImageIO multiplies straight color by alpha in the file's type: in 8 bits, little is left
     // of color with low alpha.

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from pictures import share_of
 
+pytestmark = pytest.mark.share(2)
+
 oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 REST = "; the operator clamp keeps the colors, --input lin_rec709 takes the numbers as scene-linear"

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from shots import make_shot
 
+pytestmark = pytest.mark.share(2)
+
 
 OK, FAILED, USAGE, FILE = 0, 1, 2, 3
 CLAMP = ["--operator", "clamp"]

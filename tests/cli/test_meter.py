@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from pictures import read_exr, read_planes, share_of, share_of_refusals, shared_picture, skip, write_exr
 
+pytestmark = pytest.mark.share(2)
+
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 FPS, UP, DOWN = 12, 3.0, 0.8
 # A shot: dark, then the sun, then dark again.
@@ -128,7 +130,6 @@ def test_figures(tool, report):
     check_figures(tool, report, tool.folder / "chart.exr", "chart")
 
 
-@pytest.mark.share(2)
 def test_figures_of_a_photograph(tool, report):
     memorial = shared_picture("memorial.hdr") or skip("memorial.hdr (TONEWRIGHT_SHARED)")
     check_figures(tool, report, memorial, "memorial.hdr")
@@ -194,7 +195,7 @@ def test_ranges(tool, report):
 def test_single(tool, report):
     """A picture is that of the exposure that meter names."""
     for arguments in share_of((["log-average"], ["mean", "--compensation", "-0.5"], ["histogram", "--percentiles", "10,90"],
-                               ["max", "--meter-region", "0,1,6,1"]), 2):
+                               ["max", "--meter-region", "0,1,6,1"]), 3):
         metering = ["--method", arguments[0], *arguments[1:]]
         stops = tool.meter("a.exr", *metering)[0]["exposure"]
         tool.run("apply", "a.exr", "auto.exr", "--operator", "hable", "-d", "float", "--exposure", "0.25",

@@ -16,6 +16,8 @@ import time
 import pytest
 from pictures import ALL, need_program, run, skip
 
+pytestmark = pytest.mark.share(2)
+
 OPENED = re.compile(r'open(?:at)?\([^"]*"(?:[^"]*/)?([^"/]+)", [^)]*\) = \d+')
 
 

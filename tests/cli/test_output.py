@@ -13,6 +13,8 @@ import pytest
 from pictures import share_of
 from test_pictures import oiio, read, spec_of, write
 
+pytestmark = pytest.mark.share(2)
+
 OK, USAGE, FILE = 0, 2, 3
 
 

@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 from pictures import evaluate, run, share_of, shared_picture, skip
 
+pytestmark = pytest.mark.share(2)
+
 oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 # Both run the SIMD engine, but on other rows of matrices: what is decoded or converted here in double is one float
@@ -169,7 +171,6 @@ def check(report, command, scratch):
     return Check(report, command, scratch)
 
 
-@pytest.mark.share(2)
 def test_files(check, scratch):
     """Formats, layouts, sizes."""
     rgb, rgba, five = picture(37, 53, 3), picture(37, 53, 4), picture(20, 30, 5)
@@ -205,7 +206,6 @@ def test_files(check, scratch):
     check.same("float TIFF", write(scratch / "f.tif", spec_of(rgb), rgb))
 
 
-@pytest.mark.share(2)
 def test_color(check, scratch):
     """The picture's metadata about its color."""
     rgb = np.clip(picture(24, 24, 3), 0, 1)
@@ -278,7 +278,6 @@ def subsampled_exr():
             + struct.pack("<ii", 0, len(first)) + first + struct.pack("<ii", 1, len(second)) + second)
 
 
-@pytest.mark.share(2)
 def test_parts(check, scratch):
     """Multi-part and multi-view files, and levels: --subimage, the first by default."""
     parts = [picture(12, 16, 3), picture(9, 7, 3), picture(12, 16, 3)]
@@ -311,14 +310,13 @@ def test_real(check):
              "XYZ.exr": {"matrix": to_rec709((1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3)), "bound": EXACT},
              "Tree.exr": {"alpha": 3, "bound": EXACT, "matrix": to_rec709(
                  (0.62955, 0.341, 0.2867, 0.6108, 0.1489, 0.07125, 0.3155, 0.33165))}}
-    found = [(path, kind) for name, kind in share_of(kinds.items(), 2) if (path := shared_picture(name))]
+    found = [(path, kind) for name, kind in share_of(kinds.items(), 3) if (path := shared_picture(name))]
     for path, kind in found:
         check.same(path.name, path, **kind)
     if not found:
         skip("real pictures (TONEWRIGHT_SHARED)")
 
 
-@pytest.mark.share(2)
 def test_writing(check, scratch):
     """Where the result goes, what it says, and what the user hears of it."""
     report = check.report

@@ -14,6 +14,8 @@ import subprocess
 import pytest
 from shots import contents, make_shot
 
+pytestmark = pytest.mark.share(2)
+
 OK, FAILED, USAGE, FILE = 0, 1, 2, 3
 HABLE = ["--operator", "hable", "--display", "linear"]
 

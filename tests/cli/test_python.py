@@ -17,6 +17,8 @@ from pictures import evaluate, run, share_of, skip
 from sanitizers import is_sanitized
 from shots import make_shot
 
+pytestmark = pytest.mark.share(2)
+
 # The SIMD engine is within 1e-6 of the reference (engine.h); float32 rounds by 6e-8.
 FLOAT32 = 1.1e-6
 
@@ -327,7 +329,7 @@ def test_luts(report, tw, command, scratch):
                           ["--for", "photoshop", "--format", "icc", "--icc-version", "4", "--size", "17"]),
                          ({"host": "unity", "depth": 8, "format": "strip"},
                           ["--for", "unity", "--depth", "8", "--format", "strip"])]
-    for options, words in share_of(options_and_words, 4):
+    for options, words in share_of(options_and_words, 3):
         extension = options.get("format", "cube").replace("strip", "png")
         a, b = (scratch / f"{name}.{extension}" for name in "ab")
         result = tw.bake("hable", str(a), **options)

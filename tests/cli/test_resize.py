@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from pictures import need_program, run, share_of
 
+pytestmark = pytest.mark.share(2)
+
 oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 # The filter adds floats in the same order in both programs. The engine of `clamp` and of matrices is within 1e-6 of the
@@ -97,7 +99,7 @@ def test_sizes(c):
     sizes = (("50x20", "50x20"), ("50", "50x0"), ("100", "100x0"), ("50%", "50%"), ("150%", "150%"), ("33.3%", "33.3%"),
              ("1", "1x1"), ("300x10", "300x10"), ("1x1", "1x1"))
     cases = [(shape, size) for shape in ((101, 67), (200, 67), (64, 64)) for size in sizes]
-    for (width, height), (size, theirs) in share_of(cases, 4):
+    for (width, height), (size, theirs) in share_of(cases, 3):
         path = write(c.path(f"scene{width}.exr"), scene(height, width))
         is_ = c.apply(path, size, *LINEAR)
         expected = c.oiiotool(path, theirs, "--clamp:min=0:max=1")

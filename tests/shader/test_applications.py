@@ -21,7 +21,7 @@ from dawn import Dawn, spirv_of
 from executed import reference
 from lut_encodings import srgb_encode
 from opencl import OpenCl, device
-from pictures import read_rgb
+from pictures import read_rgb, share_of
 from test_c_and_dctl import BLINK
 
 SIZE = (320, 180)
@@ -237,7 +237,7 @@ def test_files(request, report, command, scratch):
     # Application -> how to draw its file, and what takes its values to code values of sRGB.
     for application, prepare, display in (("bevy", bevy, "linear"), ("unity", unity, "linear"),
                                           ("unreal", unreal, "srgb"), ("resolve", None, "rec1886")):
-        for operator in BOUNDS:
+        for operator in share_of(BOUNDS, 3):
             function = f"{application}_{operator}"
             text = subprocess.run([command, "shader", operator, "--for", application, "--uniforms", "exposure", "--tables",
                                    "formula"],

@@ -20,6 +20,8 @@ import pytest
 from make_files import IMPOSSIBLE, NAMED, NO_EFFECT, ROWS, USED, Missing
 from pictures import share_of, skip
 
+pytestmark = pytest.mark.share(2)
+
 oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 
 REFUSED = 3
@@ -164,7 +166,7 @@ def markdown(results):
     return "\n".join(lines) + "\n"
 
 
-SHARE = {row.name for row in share_of(ROWS, 8)}
+SHARE = {row.name for row in share_of(ROWS, 9)}
 
 
 @pytest.fixture(scope="module")

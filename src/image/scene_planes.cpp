@@ -2,7 +2,6 @@
 #include "image/scene_planes.h"
 
 #include <OpenImageIO/parallel.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
@@ -11,6 +10,7 @@
 
 #include "image/source_picture.h"
 #include "image/spec_conversion.h"
+#include "picture/row_tonemapper.h"
 #include "picture/source_pixels.h"
 #include "tonewright/tonemap.h"
 
@@ -93,12 +93,7 @@ ScenePlanes read_light(const OIIO::ImageBuf& src, const SimdEngine& to_light,
                        TonemapOptions::Unpremult unpremult, double exposure_stops, int nthreads) {
     const PictureSpec spec = picture_spec(src.spec());
     const ChannelLayout layout = channel_layout(spec);
-    if (spec.depth > 1) {
-        throw Error(
-            fmt::format("picture has {} slices; expected one: local operators work on flat "
-                        "pictures",
-                        spec.depth));
-    }
+    check_flat(spec);
     ScenePlanes light;
     light.width = spec.width;
     light.height = spec.height;

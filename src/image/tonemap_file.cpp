@@ -85,15 +85,7 @@ int thread_count(int nthreads) {
 }
 
 ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
-    // The spec of a one-pixel result, with the size of the picture.
-    ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
-    pixel.width = 1;
-    ImageBuf result;
-    tonemapper.run(result, ImageBuf(pixel), {}, 1);
-    ImageSpec spec = result.spec();
-    spec.width = source.width;
-    spec.height = source.height;
-    return spec;
+    return image_spec(rows_of(tonemapper).result_spec(picture_spec(source)));
 }
 
 namespace {
@@ -111,11 +103,11 @@ class FilePass {
     FilePass(const Tonemapper& tonemapper, PictureReader& reader, PictureWriter& writer,
              const WriteOptions& options, const std::string& resize, int nthreads,
              std::size_t batch_bytes, const std::string& in)
-        : tonemapper_(tonemapper),
+        : tonemapper_(rows_of(tonemapper)),
           reader_(reader),
           writer_(writer),
           nthreads_(nthreads),
-          source_(image_spec(with_color_metadata_alone(picture_spec(reader.spec())))) {
+          source_(with_color_metadata_alone(picture_spec(reader.spec()))) {
         ImageSpec result = result_spec(tonemapper, reader.spec());
         give_date(result, in);
         if (options.write_provenance) add_provenance(result, tonemapper.options(), resize);
@@ -161,16 +153,14 @@ class FilePass {
         reader_.read_rows(batch.ybegin, batch.yend, batch.source.data());
     }
     void tonemap(Batch& batch) const {
-        const ImageBuf source(spec_of_rows(source_, batch.ybegin, batch.yend), batch.source.data());
-        ImageBuf result = result_of(batch);
-        tonemapper_.run(result, source, {}, nthreads_);
+        const int rows = batch.yend - batch.ybegin;
+        batch.result.resize(result_.scanline_bytes() * static_cast<std::size_t>(rows));
+        tonemapper_.run(source_, batch.source.data(), rows, result_.format, batch.result.data(),
+                        static_cast<unsigned>(nthreads_));
     }
-    void write(Batch& batch) { writer_.write_rows(result_of(batch)); }
-
-    [[nodiscard]] ImageBuf result_of(Batch& batch) const {
-        const ImageSpec spec = spec_of_rows(result_, batch.ybegin, batch.yend);
-        batch.result.resize(spec.image_bytes());
-        return {spec, batch.result.data()};
+    void write(Batch& batch) {
+        writer_.write_rows(
+            ImageBuf(spec_of_rows(result_, batch.ybegin, batch.yend), batch.result.data()));
     }
 
     void run_in_threads() {
@@ -220,11 +210,11 @@ class FilePass {
         if (error) std::rethrow_exception(error);
     }
 
-    const Tonemapper& tonemapper_;
+    const RowTonemapper& tonemapper_;
     PictureReader& reader_;
     PictureWriter& writer_;
     int nthreads_;
-    ImageSpec source_;
+    PictureSpec source_;
     ImageSpec result_;
     int step_ = 0;
     int rows_done_ = 0;

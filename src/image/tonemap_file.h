@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/picture_file.h"
+#include "picture/row_tonemapper.h"
 #include "tonewright/sequence.h"
 #include "tonewright/tonemap.h"
 
@@ -14,6 +15,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The number of threads: 0 is OIIO's `threads` attribute, whose 0 is all cores.
 [[nodiscard]] TONEWRIGHT_API int thread_count(int nthreads);
+
+/// The same options for rows.
+[[nodiscard]] const RowTonemapper& rows_of(const Tonemapper& tonemapper);
 
 /// The size, channels and metadata of a picture's result, untiled, without its pixels.
 /// @throws Error  a picture that cannot be tone mapped

@@ -51,6 +51,8 @@ measure_scene(const OIIO::ImageBuf& src, std::string_view input = kAutoInput,
                                                            const TonemapOptions& options,
                                                            OIIO::ROI roi = {}, int nthreads = 0);
 
+class RowTonemapper;  // of Tonewright's own files
+
 /// A view that is ready to run on pictures. It is compiled once for each source color, at the first
 /// picture, and serves every frame of a shot. Safe to use from several threads at once, on
 /// different destinations.
@@ -95,6 +97,7 @@ class TONEWRIGHT_API Tonemapper {
 
   private:
     struct State;
+    friend const RowTonemapper& rows_of(const Tonemapper& tonemapper);
     explicit Tonemapper(std::unique_ptr<const State> state);
     std::unique_ptr<const State> state_;
 };

@@ -17,6 +17,7 @@
 #include "base/atomic_file.h"
 #include "base/input_file.h"
 #include "picture/picture_error.h"
+#include "picture/row_pass.h"
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
 #include "tonewright/tonemap_options.h"
@@ -127,16 +128,6 @@ class TONEWRIGHT_API PictureReader {
     std::optional<OIIO::ImageBuf> resized_;
     int nthreads_ = 0;
 };
-
-/// Bytes that are read, processed and written at a time.
-inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
-
-/// Rows of a batch: at least 64 (formats compress up to 32 rows together, and each thread of
-/// OpenEXR takes one such block), a multiple of `step`, and at most the rows of the picture.
-/// @param step    the result of row_step(), at most `height`
-/// @param height  rows of the picture
-[[nodiscard]] TONEWRIGHT_API int rows_of_batch(std::size_t bytes_per_row, int step, int height,
-                                               std::size_t batch_bytes = kBatchBytes);
 
 /// The spec of rows [ybegin, yend) of a picture, untiled.
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture,

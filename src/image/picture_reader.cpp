@@ -4,7 +4,6 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <climits>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -574,15 +573,6 @@ void report_header(const OIIO::ImageSpec& spec, std::string_view input,
     if (!options.warn) return;
     for (const std::string& line : describe_picture(picture_spec(spec), input).ignored)
         options.warn(line);
-}
-
-int rows_of_batch(std::size_t bytes_per_row, int step, int height, std::size_t batch_bytes) {
-    constexpr int kLeast = 64;
-    step = std::clamp(step, 1, std::max(height, 1));
-    const auto rows = static_cast<int>(
-        std::min<std::size_t>(batch_bytes / std::max<std::size_t>(bytes_per_row, 1), INT_MAX));
-    const int unit = (kLeast + step - 1) / step * step;
-    return std::min(std::max(rows / unit, 1) * unit, std::max(height, 1));
 }
 
 OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture, int ybegin, int yend) {

@@ -134,7 +134,7 @@ class RowRunner {
         return true;
     }
 
-    /// Of a pixel in the planes of the data window.
+    /// Index of a pixel in the planes of the data window.
     [[nodiscard]] std::size_t index_of(int x, int y) const noexcept {
         return static_cast<std::size_t>(y - src_.ybegin()) *
                    static_cast<std::size_t>(src_.spec().width) +
@@ -245,7 +245,8 @@ bool Tonemapper::needs_whole_picture() const noexcept { return state_->rows.need
 Tonemapper::Tonemapper(std::unique_ptr<const State> state) : state_(std::move(state)) {}
 
 Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const {
-    return Tonemapper(std::make_unique<const State>(State{state_->rows.with_statistics(statistics)}));
+    return Tonemapper(
+        std::make_unique<const State>(State{state_->rows.with_statistics(statistics)}));
 }
 
 Tonemapper Tonemapper::with_exposure(double stops) const {

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "image/picture_file.h"
@@ -30,17 +29,6 @@ TONEWRIGHT_API void tonemap_in_batches(const Tonemapper& tonemapper, const std::
                                        const std::string& out, const WriteOptions& write,
                                        const ReadOptions& read, int nthreads,
                                        std::size_t batch_bytes);
-
-/// First words of the warning about a picture that is made for a display already. @see
-/// finished_warning
-inline constexpr std::string_view kFinishedPicture = "finished for a display (";
-
-/// The warning that a picture is tone mapped a second time: its header or its format says that it
-/// holds code values of an SDR display, and the operator expects light of a scene. Empty for HDR
-/// pictures, camera logs, film, textures and light, if the user names the input, and for operators
-/// that show a picture as it is (`clamp`), false colors and LUTs.
-[[nodiscard]] TONEWRIGHT_API std::string finished_warning(const OIIO::ImageSpec& spec,
-                                                          const TonemapOptions& options);
 
 /// Checks that no output replaces an input, also through links. In place, a picture may replace
 /// itself, but never another.

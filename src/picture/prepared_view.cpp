@@ -149,8 +149,7 @@ bool PreparedView::keeps_gray() const {
 UniformValues PreparedView::values() const {
     UniformValues values;
     for (const auto& [name, uniform] : uniforms) {
-        values[name] =
-            name == kExposureUniform ? view.exposure_stops : view.op.params.number(name);
+        values[name] = name == kExposureUniform ? view.exposure_stops : view.op.params.number(name);
     }
     return values;
 }

@@ -35,9 +35,9 @@ bool depends_on_picture(const TonemapOptions& options) {
 
 void check_flat(const PictureSpec& source) {
     if (source.depth <= 1) return;
-    throw Error(fmt::format(
-        "picture has {} slices; expected one: local operators work on flat pictures",
-        source.depth));
+    throw Error(
+        fmt::format("picture has {} slices; expected one: local operators work on flat pictures",
+                    source.depth));
 }
 
 struct RowTonemapper::State {

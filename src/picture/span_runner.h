@@ -60,8 +60,7 @@ struct ChannelPlan {
 /// @throws PictureError  @see channel_layout
 /// @throws Error         a result with too few channels
 [[nodiscard]] TONEWRIGHT_API ChannelPlan plan_channels(const PictureSpec& source,
-                                                       const PictureMap& with,
-                                                       int result_channels);
+                                                       const PictureMap& with, int result_channels);
 /// Adds the copies of all channels that are no color.
 /// @param channel_end  the first channel of the source that is left out
 TONEWRIGHT_API void plan_copies(ChannelPlan& plan, int channel_end, int result_channels);

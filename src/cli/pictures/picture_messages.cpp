@@ -11,7 +11,7 @@
 
 #include "cli/messages.h"
 #include "cli/pictures/requests.h"
-#include "image/tonemap_file.h"
+#include "picture/result_metadata.h"
 #include "tasks/pictures/read_picture.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

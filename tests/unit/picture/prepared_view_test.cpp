@@ -37,8 +37,7 @@ TEST(PreparedView, OneProgramServesAllLiveExposures) {
 
 TEST(PreparedView, GraysStayGrayUnlessALookTintsThem) {
     EXPECT_TRUE(PreparedView(view_of("hable", 1, "srgb"), {}, 1).keeps_gray());
-    EXPECT_FALSE(
-        PreparedView(view_of("agx_sobotka", 0, "srgb", "golden"), {}, 1).keeps_gray());
+    EXPECT_FALSE(PreparedView(view_of("agx_sobotka", 0, "srgb", "golden"), {}, 1).keeps_gray());
 }
 
 TEST(PreparedView, MixIsAShareOfTheOperator) {

@@ -7,7 +7,6 @@
 #include <OpenImageIO/imagebuf.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -56,11 +55,8 @@ void expect_same(const TonemapOptions& options, const ImageBuf& src, const TypeD
 }
 
 TEST(RowTonemapper, RowsHaveThePixelsAndTheMetadataOfPictures) {
-    const std::array names = {std::vector<std::string>{"Y"},
-                              {"Y", "A"},
-                              {"R", "G", "B"},
-                              {"R", "G", "B", "A"},
-                              {"R", "G", "B", "Z", "A"}};
+    const std::vector<std::vector<std::string>> names = {
+        {"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}, {"R", "G", "B", "Z", "A"}};
     const TonemapOptions golden = {.op = resolve_picture_operator("agx_sobotka", {}, "golden"),
                                    .exposure_stops = 1,
                                    .dither = true};
@@ -68,7 +64,8 @@ TEST(RowTonemapper, RowsHaveThePixelsAndTheMetadataOfPictures) {
         for (const TypeDesc::BASETYPE type : {TypeDesc::HALF, TypeDesc::UINT8, TypeDesc::FLOAT}) {
             // More pixels than a task has, in rows that spans do not divide.
             const ImageBuf src = make_picture(make_spec(1500, 40, channels, type), 7);
-            for (const TypeDesc::BASETYPE to : {TypeDesc::HALF, TypeDesc::FLOAT, TypeDesc::UINT16}) {
+            for (const TypeDesc::BASETYPE to :
+                 {TypeDesc::HALF, TypeDesc::FLOAT, TypeDesc::UINT16}) {
                 expect_same(hable(), src, to);
                 expect_same(golden, src, to);
             }

@@ -225,9 +225,7 @@ std::string box_of(int x, int y, int width, int height) {
 
 std::string channel_list(const PictureSpec& spec) {
     std::map<std::string, exr_pixel_type_t> channels;
-    const exr_pixel_type_t type = spec.format == T::UINT   ? EXR_PIXEL_UINT
-                                  : spec.format == T::HALF ? EXR_PIXEL_HALF
-                                                           : EXR_PIXEL_FLOAT;
+    const exr_pixel_type_t type = pixel_type_of(spec.format);
     for (const std::string& name : spec.channelnames)
         channels[name] = type;
     std::string bytes;

@@ -281,6 +281,10 @@ OIIO::TypeDesc type_of(exr_pixel_type_t type) {
     return type == EXR_PIXEL_UINT ? T::UINT : type == EXR_PIXEL_HALF ? T::HALF : T::FLOAT;
 }
 
+exr_pixel_type_t pixel_type_of(const OIIO::TypeDesc& type) {
+    return type == T::UINT ? EXR_PIXEL_UINT : type == T::HALF ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+}
+
 std::optional<ExrPart> read_header(exr_const_context_t file, int part, int part_count) {
     ExrPart result;
     PictureSpec& spec = result.spec;

@@ -41,6 +41,9 @@ struct ExrPart {
 /// OIIO's type of a channel.
 [[nodiscard]] OIIO::TypeDesc type_of(exr_pixel_type_t type);
 
+/// The type of a channel in OIIO's type; float for other types than UINT and HALF.
+[[nodiscard]] exr_pixel_type_t pixel_type_of(const OIIO::TypeDesc& type);
+
 /// The part's header as OpenImageIO 2.4 gives it.
 /// @returns  nothing for a part that this library does not read
 [[nodiscard]] std::optional<ExrPart> read_header(exr_const_context_t file, int part,

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/strings.h"
 #include "lut/in_parallel.h"
+#include "picture/exr_core.h"
 #include "picture/exr_header.h"
 #include "picture/half.h"
 #include "picture/row_kernels.h"
@@ -23,29 +23,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// The last message of OpenEXR's library in this thread: several threads read one file.
-thread_local std::string last_message;
-
-void keep_message(exr_const_context_t, exr_result_t, const char* message) {
-    last_message = message ? message : "";
-}
-
-/// @throws FileError  with the library's message, unless the result is a success
-void check(exr_result_t result) {
-    if (result == EXR_ERR_SUCCESS) return;
-    if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
-    const std::string message = std::exchange(last_message, {});
-    throw FileError(
-        problem_of_library(message.empty() ? exr_get_default_error_message(result) : message));
-}
-
 [[noreturn]] void throw_damaged() { throw FileError("the file is truncated or damaged"); }
-
-/// Closes the file.
-struct Closer {
-    void operator()(exr_context_t file) const { exr_finish(&file); }
-};
-using File = std::unique_ptr<std::remove_pointer_t<exr_context_t>, Closer>;
 
 struct InflaterCloser {
     void operator()(libdeflate_decompressor* inflater) const {
@@ -79,7 +57,7 @@ class Block {
             return;
         }
         pixels_ = make_bytes(chunk.packed_size);
-        check(exr_read_chunk(file, part_number, &chunk, pixels_.get()));
+        check_exr(exr_read_chunk(file, part_number, &chunk, pixels_.get()));
         if (is_stored) return;
         inflate(chunk.packed_size, bytes);
         first_bytes_ = pixels_.get();
@@ -121,7 +99,7 @@ class Block {
             exr_decode_pipeline_t* decoder;
             ~Destroyer() { exr_decoding_destroy(file, decoder); }
         };
-        check(exr_decoding_initialize(file, part_number, &chunk, &decoder));
+        check_exr(exr_decoding_initialize(file, part_number, &chunk, &decoder));
         const Destroyer destroyer = {file, &decoder};
         pixels_ = make_bytes(bytes);
         std::uint8_t* to = pixels_.get();
@@ -132,8 +110,8 @@ class Block {
             channel.user_line_stride = static_cast<std::int32_t>(row_bytes_);
             to += static_cast<std::size_t>(chunk.width) * part.channels[c].bytes();
         }
-        check(exr_decoding_choose_default_routines(file, part_number, &decoder));
-        check(exr_decoding_run(file, part_number, &decoder));
+        check_exr(exr_decoding_choose_default_routines(file, part_number, &decoder));
+        check_exr(exr_decoding_run(file, part_number, &decoder));
     }
 
     const RowKernels* kernels_;
@@ -195,7 +173,7 @@ class Interleaver {
 
 class ExrReader final : public RowReader {
   public:
-    ExrReader(File file, std::vector<ExrPart> parts, unsigned threads)
+    ExrReader(ExrFile file, std::vector<ExrPart> parts, unsigned threads)
         : file_(std::move(file)), parts_(std::move(parts)), threads_(threads) {}
 
     void use_threads(unsigned count) override { threads_ = count; }
@@ -229,9 +207,9 @@ class ExrReader final : public RowReader {
         const PictureSpec& spec = part.spec;
         const int y = spec.y + row * part.rows_of_block;
         exr_chunk_info_t chunk = {};
-        check(part.is_tiled
-                  ? exr_read_tile_chunk_info(file_.get(), picture, column, row, 0, 0, &chunk)
-                  : exr_read_scanline_chunk_info(file_.get(), picture, y, &chunk));
+        check_exr(part.is_tiled
+                      ? exr_read_tile_chunk_info(file_.get(), picture, column, row, 0, 0, &chunk)
+                      : exr_read_scanline_chunk_info(file_.get(), picture, y, &chunk));
         const std::int64_t left = std::int64_t{column} * spec.tile_width;
         // The size of a tile by the library is compared with the place that is left for it.
         if (chunk.height != std::min(part.rows_of_block, spec.y + spec.height - y) ||
@@ -250,7 +228,7 @@ class ExrReader final : public RowReader {
         }
     }
 
-    File file_;
+    ExrFile file_;
     std::vector<ExrPart> parts_;
     unsigned threads_;
 };
@@ -282,13 +260,12 @@ bool is_finished(exr_const_context_t file, int number, const ExrPart& part) {
 
 std::unique_ptr<RowReader> open_exr(const std::string& path, unsigned threads) {
     if constexpr (std::endian::native != std::endian::little) return nullptr;
-    exr_context_initializer_t options = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    options.error_handler_fn = keep_message;
+    exr_context_initializer_t options = exr_options();
     // OpenImageIO reads files without their table of blocks, and knows what their headers lack.
     options.flags = EXR_CONTEXT_FLAG_STRICT_HEADER | EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
     exr_context_t opened = nullptr;
     if (exr_start_read(&opened, path.c_str(), &options) != EXR_ERR_SUCCESS) return nullptr;
-    File file(opened);
+    ExrFile file(opened);
     int count = 0;
     if (exr_get_count(file.get(), &count) != EXR_ERR_SUCCESS) return nullptr;
     std::vector<ExrPart> parts;

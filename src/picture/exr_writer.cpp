@@ -14,6 +14,7 @@
 #include <cstring>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -23,6 +24,7 @@
 #include "base/system_files.h"
 #include "lut/in_parallel.h"
 #include "picture/exr_attributes.h"
+#include "picture/exr_core.h"
 #include "picture/exr_header.h"
 #include "picture/half.h"
 #include "picture/row_kernels.h"
@@ -87,6 +89,72 @@ class Deflaters {
     std::vector<Deflater> idle_;
 };
 
+/// Compressions of OpenEXR's core, which needs a file for them: one that is never written.
+class CoreEncoder {
+  public:
+    CoreEncoder(const PictureSpec& spec, exr_compression_t compression) {
+        exr_context_initializer_t options = exr_options();
+        options.write_fn = [](exr_const_context_t, void*, const void*, std::uint64_t count,
+                              std::uint64_t, exr_stream_error_func_ptr_t) {
+            return static_cast<std::int64_t>(count);
+        };
+        exr_context_t opened = nullptr;
+        check_exr(exr_start_write(&opened, "nowhere", EXR_WRITE_FILE_DIRECTLY, &options));
+        file_.reset(opened);
+        int part = 0;
+        check_exr(exr_add_part(opened, nullptr, EXR_STORAGE_SCANLINE, &part));
+        const exr_attr_box2i_t window = {{{{spec.x, spec.y}}},
+                                         {{{spec.x + spec.width - 1, spec.y + spec.height - 1}}}};
+        const exr_attr_v2f_t center = {{{0, 0}}};
+        check_exr(exr_initialize_required_attr(opened, part, &window, &window, 1, &center, 1,
+                                               EXR_LINEORDER_INCREASING_Y, compression));
+        for (const std::string& name :
+             std::set<std::string>(spec.channelnames.begin(), spec.channelnames.end())) {
+            check_exr(exr_add_channel(opened, part, name.c_str(), pixel_type_of(spec.format),
+                                      EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+        }
+        check_exr(exr_write_header(opened));
+    }
+
+    /// @param y  of the first row of the block
+    /// @returns  empty if it is not smaller than the planes
+    Bytes run(int y, const Bytes& planes) {
+        exr_chunk_info_t chunk = {};
+        check_exr(exr_write_scanline_chunk_info(file_.get(), 0, y, &chunk));
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+        exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
+#pragma GCC diagnostic pop
+        struct Destroyer {
+            exr_const_context_t file;
+            exr_encode_pipeline_t* encoder;
+            ~Destroyer() { exr_encoding_destroy(file, encoder); }
+        };
+        check_exr(exr_encoding_initialize(file_.get(), 0, &chunk, &encoder));
+        const Destroyer destroyer = {file_.get(), &encoder};
+        const std::uint8_t* from = planes.data();
+        for (int c = 0; c < encoder.channel_count; ++c) {
+            exr_coding_channel_info_t& channel = encoder.channels[c];
+            channel.encode_from_ptr = from;
+            channel.user_pixel_stride = channel.bytes_per_element;
+            channel.user_line_stride =
+                static_cast<std::int32_t>(planes.size() / static_cast<std::size_t>(chunk.height));
+            from += static_cast<std::size_t>(chunk.width) *
+                    static_cast<std::size_t>(channel.bytes_per_element);
+        }
+        check_exr(exr_encoding_choose_default_routines(file_.get(), 0, &encoder));
+        encoder.yield_until_ready_fn = nullptr;  // the block is written elsewhere
+        encoder.write_fn = nullptr;
+        check_exr(exr_encoding_run(file_.get(), 0, &encoder));
+        if (encoder.compressed_bytes >= planes.size()) return {};
+        const auto* const packed = static_cast<const std::uint8_t*>(encoder.compressed_buffer);
+        return {packed, packed + encoder.compressed_bytes};
+    }
+
+  private:
+    ExrFile file_;
+};
+
 /// Rows of a block to its bytes in the file, which are those of other writers of OpenEXR.
 class BlockEncoder {
   public:
@@ -97,6 +165,7 @@ class BlockEncoder {
           compression_(compression),
           order_(channels_),
           deflaters_(level) {
+        if (!is_deflated() && compression != EXR_COMPRESSION_NONE) core_.emplace(spec, compression);
         std::vector<std::size_t> by_name(channels_);
         for (std::size_t c = 0; c < channels_; ++c)
             by_name[c] = c;
@@ -108,17 +177,26 @@ class BlockEncoder {
     }
 
     /// The stored bytes.
+    /// @param y     of the first row
     /// @param rows  interleaved, of `type`
-    Bytes run(int row_count, T type, const std::byte* rows) {
-        if (compression_ == EXR_COMPRESSION_NONE) return planes_of(row_count, type, rows);
-        Bytes packed = deflaters_.run(predicted(row_count, type, rows));
-        // A block of the size of its pixels holds them as they are: readers know it by the size.
-        return packed.empty() ? planes_of(row_count, type, rows) : packed;
+    Bytes run(int y, int row_count, T type, const std::byte* rows) {
+        // A block of the size of its planes holds them as they are: readers know it by the size.
+        if (is_deflated()) {
+            Bytes packed = deflaters_.run(predicted(row_count, type, rows));
+            return packed.empty() ? planes_of(row_count, type, rows) : packed;
+        }
+        Bytes planes = planes_of(row_count, type, rows);
+        if (!core_) return planes;
+        Bytes packed = core_->run(y, planes);
+        return packed.empty() ? planes : packed;
     }
 
     [[nodiscard]] std::size_t row_bytes() const { return width_ * channels_ * number_bytes(); }
 
   private:
+    [[nodiscard]] bool is_deflated() const {
+        return compression_ == EXR_COMPRESSION_ZIP || compression_ == EXR_COMPRESSION_ZIPS;
+    }
     [[nodiscard]] std::size_t number_bytes() const { return type_ == T::HALF ? 2 : 4; }
 
     /// Planes of channels by name, row after row, to a function of (row, bytes).
@@ -187,6 +265,7 @@ class BlockEncoder {
     exr_compression_t compression_;
     std::vector<std::size_t> order_;  // of each channel, its place among the planes
     Deflaters deflaters_;
+    std::optional<CoreEncoder> core_;
 };
 
 class ExrWriter final : public RowWriter {
@@ -255,7 +334,8 @@ class ExrWriter final : public RowWriter {
         std::vector<Bytes> blocks(static_cast<std::size_t>((row_count - 1) / rows_of_block_ + 1));
         in_parallel(blocks.size(), threads_, [&](std::size_t i) {
             const int first = static_cast<int>(i) * rows_of_block_;
-            blocks[i] = encoder_.run(std::min(rows_of_block_, row_count - first), type,
+            blocks[i] = encoder_.run(spec_.y + written_rows_ + first,
+                                     std::min(rows_of_block_, row_count - first), type,
                                      rows + static_cast<std::size_t>(first) * step);
         });
         for (const Bytes& block : blocks) {
@@ -297,6 +377,24 @@ int deflate_level(const PictureSpec& spec) {
     return quality <= 4 ? std::min(quality, kDefault) : quality;
 }
 
+/// 0 for compressions that are left to OpenImageIO: OpenEXR 3.1 has no DWAA and DWAB in its core,
+/// and its core's B44 is not compared yet.
+int rows_of_written_block(exr_compression_t compression) {
+    switch (compression) {
+        case EXR_COMPRESSION_NONE:
+        case EXR_COMPRESSION_RLE:
+        case EXR_COMPRESSION_ZIPS:
+            return 1;
+        case EXR_COMPRESSION_ZIP:
+        case EXR_COMPRESSION_PXR24:
+            return 16;
+        case EXR_COMPRESSION_PIZ:
+            return 32;
+        default:
+            return 0;
+    }
+}
+
 /// Names that the format can hold, each once.
 bool has_good_names(const PictureSpec& spec) {
     constexpr std::size_t kLongestName = 255;
@@ -323,10 +421,8 @@ std::unique_ptr<RowWriter> create_exr(int file, const PictureSpec& spec, unsigne
     const exr_compression_t compression =
         compression_of(lowercase(fitted.get_string_attribute("compression")))
             .value_or(EXR_COMPRESSION_ZIP);
-    const bool is_zip = compression == EXR_COMPRESSION_ZIP;
-    if (!is_zip && compression != EXR_COMPRESSION_ZIPS && compression != EXR_COMPRESSION_NONE)
-        return nullptr;
-    const int rows_of_block = is_zip ? 16 : 1;
+    const int rows_of_block = rows_of_written_block(compression);
+    if (rows_of_block == 0) return nullptr;
     // The size of a block is a number of 31 bits.
     if (fitted.scanline_bytes() > static_cast<std::size_t>(INT32_MAX / rows_of_block))
         return nullptr;

@@ -12,7 +12,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// @param file     a descriptor, open for writing and empty; the caller closes it
 /// @param threads  that encode blocks of rows; 0: as many as are idle
 /// @returns  null for a spec that this writer leaves to OpenImageIO: tiles, deep pixels, channels
-///           of different types, DWAA and DWAB, rows from the last to the first
+///           of different types, B44(A), DWAA and DWAB, rows from the last to the first
 /// @throws FileError  as RowWriter::write_rows()
 [[nodiscard]] std::unique_ptr<RowWriter> create_exr(int file, const PictureSpec& spec,
                                                     unsigned threads);

@@ -78,6 +78,8 @@ TEST(ExrHeader, TypesAndSizesOfChannels) {
     EXPECT_TRUE(type_of(EXR_PIXEL_HALF) == OIIO::TypeHalf);
     EXPECT_TRUE(type_of(EXR_PIXEL_FLOAT) == OIIO::TypeFloat);
     EXPECT_TRUE(type_of(EXR_PIXEL_UINT) == OIIO::TypeUInt32);
+    for (const exr_pixel_type_t type : {EXR_PIXEL_HALF, EXR_PIXEL_FLOAT, EXR_PIXEL_UINT})
+        EXPECT_EQ(pixel_type_of(type_of(type)), type);
     ExrPart part;
     part.channels = {{.name = "A", .type = EXR_PIXEL_HALF}, {.name = "Z", .type = EXR_PIXEL_FLOAT}};
     EXPECT_EQ(part.pixel_bytes(), 6U);

@@ -60,7 +60,8 @@ TEST_P(ExrWriterOf, StoresBlocksThatDoNotBecomeSmaller) {
     expect_same_file(spec, OIIO::TypeHalf, pixels, {64});
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ExrWriterOf, testing::Values("none", "zips", "zip"),
+INSTANTIATE_TEST_SUITE_P(All, ExrWriterOf,
+                         testing::Values("none", "rle", "zips", "zip", "piz", "pxr24"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST(ExrWriter, RoundsFloatsAsOpenImageIO) {
@@ -113,6 +114,7 @@ TEST(ExrWriter, LeavesOthersToOpenImageIO) {
         spec.channelformats = {OIIO::TypeHalf, OIIO::TypeHalf, OIIO::TypeFloat};
     }));
     EXPECT_TRUE(is_left([](PictureSpec& spec) { spec.attribute("compression", "dwaa"); }));
+    EXPECT_TRUE(is_left([](PictureSpec& spec) { spec.attribute("compression", "b44"); }));
     EXPECT_TRUE(
         is_left([](PictureSpec& spec) { spec.attribute("openexr:lineOrder", "decreasingY"); }));
     EXPECT_TRUE(is_left([](PictureSpec& spec) { spec.channelnames[0] = std::string(256, 'a'); }));

@@ -54,6 +54,7 @@ THIRD_PARTY = {
     "OpenColorIO": ["ocio", "verify"],
     "OpenEXR": ["picture"],
     "libdeflate.h": ["picture"],
+    "jpeglib.h": ["picture"],
     "png.h": ["picture"],
     "zlib.h": ["picture"],
     "OpenImageIO": ["picture", "image", "tasks/pictures", "cli/pictures", "plugin", "python"],

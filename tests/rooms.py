@@ -33,6 +33,7 @@ FILES = {
     "formula/glsl_statements": "a part of the parser: glsl_test gives it shaders",
     "engine/simd_kernels": "compiled once for each instruction set: simd_program_test and probe_block_test compare every kernel",
     "engine/vector_code": "writes machine code: machine_code_test and simd_program_test compare its bits with the interpreter's",
+    "picture/jpeg_metadata": "segments of JPEG files: jpeg_writer_test compares whole files with those of OpenImageIO",
 }
 DECLARED = re.compile(r"\bTONEWRIGHT_API\s+(?!__attribute__)([^;{]*?)\b(operator\W+|\w+)\s*\(", re.S)
 CLASS = re.compile(r"^\s*(?:class|struct|enum)\b")

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <csetjmp>
 #include <cstdint>
 #include <cstdio>
@@ -17,13 +16,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/half_value.h"
 #include "base/strings.h"
 #include "base/system_files.h"
 #include "lut/in_parallel.h"
 #include "picture/file_bytes.h"
 #include "picture/png_header.h"
 #include "picture/png_kernels.h"
+#include "picture/row_codes.h"
 
 #include <fmt/format.h>
 
@@ -141,6 +140,7 @@ class PngWriter final : public RowWriter {
           spec_(spec),
           threads_(threads),
           requested_(requested_compression(spec)),
+          to_codes_(spec),
           row_bytes_(spec.scanline_bytes()),
           stride_(kPngLead + row_bytes_),
           block_rows_(std::max<std::size_t>(1, kBlockBytes / (row_bytes_ + 1))),
@@ -171,9 +171,6 @@ class PngWriter final : public RowWriter {
     std::uint8_t* codes_of(std::ptrdiff_t row) {
         return &codes_[static_cast<std::size_t>(row + 1) * stride_ + kPngLead];
     }
-    void take_rows(std::size_t count, OIIO::TypeDesc type, const std::byte* rows);
-    void convert(OIIO::TypeDesc type, const std::byte* from, std::uint8_t* to) const;
-    void convert_floats(const float* from, std::uint8_t* to, std::size_t count) const;
     void compress(std::size_t index);
     void write_batch();
 
@@ -181,6 +178,7 @@ class PngWriter final : public RowWriter {
     PictureSpec spec_;
     unsigned threads_;
     std::optional<Compression> requested_;
+    RowCodes to_codes_;
     const PngKernels& with_ = png_kernels().front();
     std::size_t row_bytes_;
     std::size_t stride_;  // of codes_
@@ -188,68 +186,19 @@ class PngWriter final : public RowWriter {
     Bytes codes_;     // the row above the batch, and its rows, each after zeros
     Bytes filtered_;  // the window before the batch, and its rows, each after its filter's number
     std::vector<Block> blocks_;
-    Bytes codes_of_halves_;
     std::size_t batch_size_ = 0;  // rows
     std::size_t done_ = 0;        // rows of the batches before
     std::uint32_t adler_ = 1;
 };
 
-void PngWriter::convert_floats(const float* from, std::uint8_t* to, std::size_t count) const {
-    if (spec_.format.basetype == T::UINT8) {
-        with_.to_codes_8(from, to, count);
-    } else {
-        with_.to_codes_16(from, to, count);
-    }
-}
-
-/// One row.
-void PngWriter::convert(OIIO::TypeDesc type, const std::byte* from, std::uint8_t* to) const {
-    const std::size_t size = size_of(spec_.format);
-    const std::size_t count = row_bytes_ / size;
-    if (type.basetype == T::FLOAT) {
-        convert_floats(reinterpret_cast<const float*>(from), to, count);
-    } else if (type.basetype == T::HALF) {
-        for (std::size_t i = 0; i < count; ++i) {
-            std::uint16_t half = 0;
-            std::memcpy(&half, from + 2 * i, sizeof half);
-            std::memcpy(to + size * i, &codes_of_halves_[size * half], size);
-        }
-    } else {
-        std::memcpy(to, from, row_bytes_);
-        if (size == 2 && std::endian::native == std::endian::little) {
-            for (std::size_t i = 0; i < row_bytes_; i += 2)
-                std::swap(to[i], to[i + 1]);
-        }
-    }
-}
-
-/// Adds rows to the batch.
-void PngWriter::take_rows(std::size_t count, OIIO::TypeDesc type, const std::byte* rows) {
-    const std::size_t from_bytes =
-        size_of(type) * static_cast<std::size_t>(spec_.nchannels * spec_.width);
-    if (type.basetype == T::HALF && codes_of_halves_.empty()) {
-        constexpr std::size_t kHalves = 65536;
-        std::vector<float> values(kHalves);
-        for (unsigned bits = 0; bits < kHalves; ++bits)
-            values[bits] = static_cast<float>(half_value(bits));
-        codes_of_halves_.resize(kHalves * size_of(spec_.format));
-        convert_floats(values.data(), codes_of_halves_.data(), kHalves);
-    }
-    constexpr std::size_t kRows = 16;  // for each thread at a time
-    in_parallel((count + kRows - 1) / kRows, threads_, [&](std::size_t piece) {
-        for (std::size_t i = kRows * piece; i < std::min(count, kRows * (piece + 1)); ++i)
-            convert(type, rows + i * from_bytes,
-                    codes_of(static_cast<std::ptrdiff_t>(batch_size_ + i)));
-    });
-    batch_size_ += count;
-}
-
 void PngWriter::write_rows(int row_count, OIIO::TypeDesc type, const std::byte* rows) {
     auto rest = static_cast<std::size_t>(row_count);
     while (rest > 0) {
         const std::size_t count = std::min(rest, batch_rows() - batch_size_);
-        take_rows(count, type, rows);
-        rows += count * size_of(type) * static_cast<std::size_t>(spec_.nchannels * spec_.width);
+        to_codes_.convert(count, type, rows, codes_of(static_cast<std::ptrdiff_t>(batch_size_)),
+                          stride_, threads_);
+        batch_size_ += count;
+        rows += count * to_codes_.row_bytes(type);
         rest -= count;
         if (batch_size_ == batch_rows()) write_batch();
     }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/strings.h"
@@ -29,16 +30,28 @@ struct Tag {
     std::string_view attribute;
     std::uint16_t exif;
     std::uint16_t type;
-    std::uint8_t iptc;  // 0: none
+    std::uint8_t iptc = 0;    // 0: none
+    bool is_private = false;  // in Exif's own directory
 };
-constexpr std::array<Tag, 8> kTags = {{{"Software", 0x131, kAscii, 65},
-                                       {"Artist", 0x13B, kAscii, 80},
-                                       {"Copyright", 0x8298, kAscii, 116},
-                                       {"ImageDescription", 0x10E, kAscii, 120},
-                                       {"DateTime", 0x132, kAscii, 0},
-                                       {"Orientation", 0x112, kShort, 0},
-                                       {"XResolution", 0x11A, kRational, 0},
-                                       {"YResolution", 0x11B, kRational, 0}}};
+constexpr std::array<Tag, 12> kTags = {{{"Software", 0x131, kAscii, 65},
+                                        {"Artist", 0x13B, kAscii, 80},
+                                        {"Copyright", 0x8298, kAscii, 116},
+                                        {"ImageDescription", 0x10E, kAscii, 120},
+                                        {"DateTime", 0x132, kAscii},
+                                        {"Orientation", 0x112, kShort},
+                                        {"XResolution", 0x11A, kRational},
+                                        {"YResolution", 0x11B, kRational},
+                                        {"ExposureTime", 0x829A, kRational, 0, true},
+                                        {"FNumber", 0x829D, kRational, 0, true},
+                                        {"Exif:ImageHistory", 0x9213, kAscii, 0, true},
+                                        {"Exif:ColorSpace", 0xA001, kShort, 0, true}}};
+
+const Tag* find_tag(const PictureAttribute& attribute) {
+    const auto* const found = std::find_if(kTags.begin(), kTags.end(), [&](const Tag& tag) {
+        return is_same_name(tag.attribute, attribute.name);
+    });
+    return found == kTags.end() ? nullptr : found;
+}
 
 /// OpenImageIO writes some attributes of these names, which this file does not know.
 bool is_left_to_openimageio(const PictureAttribute& attribute) {
@@ -70,31 +83,59 @@ class Directory {
     /// @param block  from the header on, which the offsets count from
     void add(std::string& block, std::uint16_t tag, std::uint16_t type, std::uint32_t count,
              std::string value) {
-        append(fields_, tag);
-        append(fields_, type);
-        append(fields_, count);
+        std::string& field = fields_.emplace_back(tag, "").second;
+        append(field, tag);
+        append(field, type);
+        append(field, count);
         constexpr std::size_t kInField = 4;
         if (value.size() <= kInField) {
             value.resize(kInField);
-            fields_ += value;
+            field += value;
         } else {
-            append(fields_, static_cast<std::uint32_t>(block.size()));
+            append(field, static_cast<std::uint32_t>(block.size()));
             block += value;
         }
-        ++count_;
     }
+    void sort() { std::sort(fields_.begin(), fields_.end()); }
+    [[nodiscard]] bool empty() const { return fields_.empty(); }
     [[nodiscard]] std::string bytes() const {
         std::string all;
-        append(all, count_);
-        all += fields_;
+        append(all, static_cast<std::uint16_t>(fields_.size()));
+        for (const auto& [tag, field] : fields_)
+            all += field;
         append(all, std::uint32_t{0});  // no next directory
         return all;
     }
 
   private:
-    std::string fields_;
-    std::uint16_t count_ = 0;
+    std::vector<std::pair<std::uint16_t, std::string>> fields_;
 };
+
+/// A number as a fraction with the denominator 1, 10, ... or 1000000, or as 1/n.
+std::optional<std::string> fraction_of(float number) {
+    constexpr float kMost = 2000;  // times 1000000, it fits into 31 bits
+    const bool is_whole = std::floor(number) == number;
+    if (!(number >= 0 && number <= (is_whole ? 65535 : kMost))) return {};
+    const double inverse = number > 0 ? 1.0 / static_cast<double>(number) : 0;
+    std::uint32_t top = 1;
+    std::uint32_t bottom = 1;
+    constexpr double kMostInverse = 1e9;
+    if (inverse >= 1 && inverse <= kMostInverse && std::floor(inverse) == inverse) {
+        bottom = static_cast<std::uint32_t>(inverse);
+    } else {
+        constexpr float kPrecision = 1e-5F;
+        constexpr std::uint32_t kMostBottom = 1000000;
+        for (;; bottom *= 10, number *= 10) {
+            top = static_cast<std::uint32_t>(number);
+            const float rest = number - static_cast<float>(top);
+            if (rest <= kPrecision || bottom >= kMostBottom) break;
+        }
+    }
+    std::string fraction;
+    append(fraction, top);
+    append(fraction, bottom);
+    return fraction;
+}
 
 /// Adds the field of an attribute.
 /// @returns  false if OpenImageIO converts the value
@@ -112,12 +153,11 @@ bool add_field(const Tag& tag, const PictureAttribute& attribute, const PictureS
         if (attribute.type != T(T::INT) && attribute.type != T(T::UINT16)) return false;
         append(value, static_cast<std::uint16_t>(spec.get_int_attribute(attribute.name)));
     } else {
-        if (attribute.type != T(T::FLOAT)) return false;
-        const float number = spec.get_float_attribute(attribute.name);
-        constexpr float kMost = 65535;
-        if (!(number >= 1 && number <= kMost) || std::floor(number) != number) return false;
-        append(value, static_cast<std::uint32_t>(number));
-        append(value, std::uint32_t{1});
+        const std::optional<std::string> fraction =
+            attribute.type == T(T::FLOAT) ? fraction_of(spec.get_float_attribute(attribute.name))
+                                          : std::nullopt;
+        if (!fraction) return false;
+        value = *fraction;
     }
     directory.add(block, tag.exif, tag.type, count, value);
     return true;
@@ -129,24 +169,19 @@ std::optional<std::string> exif_of(const PictureSpec& spec) {
     append(block, std::uint16_t{42});
     append(block, std::uint32_t{0});  // the offset of the directory
     Directory main;
+    Directory exif;
     for (const PictureAttribute& attribute : spec.attributes) {
-        if (is_left_to_openimageio(attribute)) return {};
-        for (const Tag& tag : kTags) {
-            if (is_same_name(attribute.name, tag.attribute) &&
-                !add_field(tag, attribute, spec, block, main)) {
-                return {};
-            }
-        }
+        const Tag* const tag = find_tag(attribute);
+        if (!tag && is_left_to_openimageio(attribute)) return {};
+        if (tag && !add_field(*tag, attribute, spec, block, tag->is_private ? exif : main))
+            return {};
     }
     std::string private_fields;
-    if (is_same_name(spec.get_string_attribute("oiio:ColorSpace"), "sRGB")) {
-        Directory exif;
+    if (!exif.empty()) {
         exif.add(block, 0x9000, kUndefined, 4, "0230");                      // version
         exif.add(block, 0x9101, kUndefined, 4, std::string("\1\2\3\0", 4));  // Y, Cb, Cr
         exif.add(block, 0xA000, kUndefined, 4, "0100");                      // FlashPix
-        std::string srgb;
-        append(srgb, std::uint16_t{1});
-        exif.add(block, 0xA001, kShort, 1, srgb);
+        exif.sort();
         private_fields = exif.bytes();
         constexpr std::size_t kField = 12;
         std::string offset;
@@ -182,7 +217,10 @@ std::string iptc_of(const PictureSpec& spec) {
 
 }  // namespace
 
-std::optional<JpegMetadata> jpeg_metadata(const PictureSpec& spec) {
+std::optional<JpegMetadata> jpeg_metadata(const PictureSpec& picture) {
+    PictureSpec spec = picture;
+    if (is_same_name(spec.get_string_attribute("oiio:ColorSpace"), "sRGB"))
+        spec.attribute("Exif:ColorSpace", 1);
     const std::optional<std::string> exif = exif_of(spec);
     if (!exif) return {};
     JpegMetadata metadata = {.comment = spec.get_string_attribute("ImageDescription"),

@@ -15,10 +15,11 @@ struct JpegMetadata {
     std::string iptc;     // APP13: IPTC IIM 4.2 in a Photoshop resource; empty: none
 };
 
-/// The segments that OpenImageIO 2.4 writes for the attributes, byte for byte. It knows texts
-/// (`Software`, `Artist`, `Copyright`, `ImageDescription`, `DateTime`), the orientation, whole
-/// resolutions and the tag of sRGB.
+/// The segments that OpenImageIO 2.4 writes for the attributes, byte for byte: texts (`Software`,
+/// `Artist`, `Copyright`, `ImageDescription`, `DateTime`, `Exif:ImageHistory`), the orientation,
+/// resolutions, exposure time, f-number and the tag of sRGB. OpenImageIO writes 1/2, 1/4, ... as
+/// 1/0, and an empty text can end its process; here they are right.
 /// @returns  nothing if OpenImageIO writes other attributes of the picture, too
-[[nodiscard]] std::optional<JpegMetadata> jpeg_metadata(const PictureSpec& spec);
+[[nodiscard]] std::optional<JpegMetadata> jpeg_metadata(const PictureSpec& picture);
 
 TONEWRIGHT_NAMESPACE_END

@@ -95,6 +95,21 @@ TEST(JpegWriter, AttributesEqualThoseOfOpenImageIO) {
     for (const char* space : {"sRGB", "Linear", "Gamma2.2", "Rec.2100-PQ"})
         expect_equal(space, kSmall, with("oiio:ColorSpace", space));
     expect_equal("numbers", kSmall, with("framesPerSecond", 24.0F));
+    for (const char* name : {"ExposureTime", "FNumber", "XResolution", "YResolution"}) {
+        for (const float number :
+             {0.0F, 1.0F, 2.8F, 30.0F, 0.01F, 0.3F, 1.0F / 3, 72.5F, 300.0F, 1e-7F})
+            expect_equal(name, kSmall, with(name, number));
+    }
+    expect_equal("history", kSmall, with("Exif:ImageHistory", "oiiotool a.exr -o b.exr"));
+    for (const int space : {1, 65535})
+        expect_equal("Exif:ColorSpace", kSmall, with("Exif:ColorSpace", space));
+    expect_equal("Exif's directory", kSmall, [](ImageSpec& spec) {
+        spec.attribute("Exif:ImageHistory", "oiiotool a.exr -o b.exr");
+        spec.attribute("FNumber", 5.6F);
+        spec.attribute("Software", "s");
+        spec.attribute("ExposureTime", 30.0F);
+        spec.attribute("oiio:ColorSpace", "sRGB");
+    });
     expect_equal("all", kSmall, [](ImageSpec& spec) {
         spec.attribute("Copyright", "someone");
         spec.attribute("Orientation", 6);
@@ -107,6 +122,17 @@ TEST(JpegWriter, AttributesEqualThoseOfOpenImageIO) {
         const std::string profile(568, 'p');
         spec.attribute("ICCProfile", TypeDesc(TypeDesc::UINT8, 568), profile.data());
     });
+}
+
+TEST(JpegWriter, InversesAreFractions) {
+    // OpenImageIO 2.4 writes 1/0.
+    const Folder folder;
+    ImageSpec spec = kSmall;
+    spec.attribute("ExposureTime", 1.0F / 64);
+    write_ours(folder / "a.jpg", spec, values_of(spec, Content::flat));
+    const auto in = OIIO::ImageInput::open(folder / "a.jpg");
+    ASSERT_TRUE(in);
+    EXPECT_EQ(in->spec().get_float_attribute("ExposureTime"), 1.0F / 64);
 }
 
 TEST(JpegWriter, EmptyTextsAreLeftOut) {
@@ -185,8 +211,9 @@ TEST(JpegWriter, LeavesOtherPicturesToOpenImageIO) {
     for (const char* name :
          {"Exif:LensModel", "IPTC:City", "GPano:ProjectionType", "Keywords", "Make", "crs:Version"})
         EXPECT_FALSE(is_written(kSmall, with(name, "text"))) << name;
-    EXPECT_FALSE(is_written(kSmall, with("ExposureTime", 0.01F)));
-    EXPECT_FALSE(is_written(kSmall, with("XResolution", 72.5F)));
+    EXPECT_FALSE(is_written(kSmall, with("XResolution", 2000.5F)));
+    EXPECT_FALSE(is_written(kSmall, with("ExposureTime", -1.0F)));
+    EXPECT_FALSE(is_written(kSmall, with("ExposureTime", 3)));
     EXPECT_FALSE(is_written(kSmall, with("XResolution", "72")));
     EXPECT_FALSE(is_written(kSmall, with("ResolutionUnit", 2)));
     EXPECT_FALSE(is_written(kSmall, with("Software", 2)));

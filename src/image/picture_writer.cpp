@@ -34,6 +34,7 @@
 #include "picture/compression.h"
 #include "picture/exr_writer.h"
 #include "picture/format_limits.h"
+#include "picture/jpeg_writer.h"
 #include "picture/light_levels.h"
 #include "picture/png_chunks.h"
 #include "picture/png_writer.h"
@@ -327,7 +328,7 @@ void PictureWriter::open(const ImageSpec& picture) {
     if (file < 0) fail(problem_of_system(errno));
     file_ = std::make_unique<OpenFile>(file);
     if (std::unique_ptr<RowWriter> rows = own_writer(file, spec, chunks)) {
-        out_ = row_output(std::move(rows), format() == "png" ? "png" : "openexr");
+        out_ = row_output(std::move(rows), out_->format_name());
     } else {
         open_by_openimageio(spec, chunks);
     }
@@ -341,6 +342,7 @@ std::unique_ptr<RowWriter> PictureWriter::own_writer(int file, const ImageSpec& 
     try {
         if (format() == "openexr") return create_exr(file, picture_spec(spec), threads_);
         if (format() == "png") return create_png(file, picture_spec(spec), threads_, chunks);
+        if (format() == "jpeg") return create_jpeg(file, picture_spec(spec), threads_);
     } catch (const FileError& e) {
         fail(e.problem());
     }

@@ -26,6 +26,7 @@
 #include "picture/exr_attributes.h"
 #include "picture/exr_core.h"
 #include "picture/exr_header.h"
+#include "picture/file_bytes.h"
 #include "picture/half.h"
 #include "picture/row_kernels.h"
 #include "tonewright/error.h"
@@ -35,18 +36,6 @@ namespace {
 
 using T = OIIO::TypeDesc;
 using Bytes = std::vector<std::uint8_t>;
-
-/// @throws FileError  with the system's reason and its number
-void write_all(int file, const void* bytes, std::size_t count) {
-    const auto* from = static_cast<const std::uint8_t*>(bytes);
-    while (count > 0) {
-        const ::ssize_t written = ::write(file, from, piece_of(count));
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) throw FileError(problem_of_system(written < 0 ? errno : EIO));
-        from += written;
-        count -= static_cast<std::size_t>(written);
-    }
-}
 
 struct DeflaterCloser {
     void operator()(libdeflate_compressor* deflater) const { libdeflate_free_compressor(deflater); }

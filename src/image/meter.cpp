@@ -207,7 +207,7 @@ Metering meter_file(const std::string& path, const MeterOptions& options, int nt
     std::optional<PictureReader> reader;
     about_picture(path, [&] {
         reader.emplace(path, nthreads, options.read);
-        report_header(reader->spec(), options.input, options.read);
+        report_header(picture_spec(reader->spec()), options.input, options.read);
     });
     try {
         require_pixels(reader->spec(), options);

@@ -9,23 +9,6 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-int OpenFile::patch(std::size_t place, std::string_view bytes) const {
-    while (!bytes.empty()) {
-        const ::ssize_t written =
-            ::pwrite(file_, bytes.data(), bytes.size(), static_cast<::off_t>(place));
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return written < 0 ? errno : EIO;
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-        place += static_cast<std::size_t>(written);
-    }
-    return 0;
-}
-
-int OpenFile::close() {
-    if (file_ < 0) return 0;
-    return ::close(std::exchange(file_, -1)) == 0 ? 0 : errno;
-}
-
 OutputFile::OutputFile(int file, const std::string& name)
     : IOProxy(name, Write), file_(::fdopen(file, "wb")) {
     if (!file_) {
@@ -38,11 +21,6 @@ OutputFile::OutputFile(int file, const std::string& name)
 
 OutputFile::~OutputFile() {
     if (file_) std::fclose(file_);
-}
-
-void OutputFile::patch(std::size_t place, std::string_view bytes) {
-    if (!errno_ && ::fseeko(file_, static_cast<off_t>(place), SEEK_SET) != 0) errno_ = errno;
-    put(bytes.data(), bytes.size());
 }
 
 bool OutputFile::seek(int64_t offset) {

@@ -15,26 +15,6 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A file that is open for writing.
-class OpenFile {
-  public:
-    explicit OpenFile(int file) : file_(file) {}
-    ~OpenFile() { (void)close(); }
-    OpenFile(const OpenFile&) = delete;
-    OpenFile& operator=(const OpenFile&) = delete;
-
-    /// Replaces bytes that were written.
-    /// @returns  0 or an errno
-    [[nodiscard]] int patch(std::size_t place, std::string_view bytes) const;
-    /// @returns  0 or an errno
-    [[nodiscard]] int close();
-    /// Gives the descriptor to another owner.
-    [[nodiscard]] int release() { return std::exchange(file_, -1); }
-
-  private:
-    int file_;
-};
-
 /// The file of OIIO's writers. They do not check whether their last bytes reached the disk (PNG:
 /// none of them), and libjpeg ends the process after a failed write. This file therefore accepts
 /// everything, and remembers the first error.
@@ -51,10 +31,6 @@ class OutputFile final : public OIIO::Filesystem::IOProxy {
         place_ = static_cast<int64_t>(place);
         inserted_ = std::move(bytes);
     }
-
-    /// Replaces bytes that were written.
-    /// @param place  in the file, after what was inserted
-    void patch(std::size_t place, std::string_view bytes);
 
     /// Begins to count the blocks of an OpenEXR file, each of which begins with its first row and
     /// its size in bytes, four bytes each.

@@ -5,6 +5,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -16,6 +17,8 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "picture/file_reader.h"
+#include "picture/file_writer.h"
 #include "picture/picture_error.h"
 #include "picture/row_pass.h"
 #include "tonewright/error.h"
@@ -25,12 +28,6 @@
 
 /// Picture files, a few rows at a time. Reading and writing succeed completely or fail.
 TONEWRIGHT_NAMESPACE_BEGIN
-
-class LightLevelMeter;
-class RowWriter;
-class OpenFile;
-class OutputFile;
-struct FormatLimits;
 
 /// No limit, for a picture of our own.
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
@@ -92,8 +89,8 @@ class TONEWRIGHT_API PictureReader {
     ///                 units and white
     /// @throws PictureError, Error  @see describe_picture
     void convert_colors(const TonemapOptions& options);
-    /// Rows are read in multiples of this, from the first one on: the height of a tile, or 1.
-    [[nodiscard]] int row_step() const;
+    /// @see FileReader
+    [[nodiscard]] int row_step() const { return std::max(spec_.tile_height, 1); }
     /// Reads rows [ybegin, yend) of all channels, interleaved and packed.
     /// @throws FileError  truncated or damaged.
     void read_rows(int ybegin, int yend, std::byte* to);
@@ -102,28 +99,19 @@ class TONEWRIGHT_API PictureReader {
     [[nodiscard]] OIIO::ImageBuf read_all();
 
   private:
-    void check(bool was_read) const;
-    void choose_subimage(const ReadOptions& options);
-    void choose_layer(const ReadOptions& options);
-    void deliver(const std::vector<int>& channels, bool has_alpha);
-    void check_size(double max_pixels) const;
+    class InputRows;
+    [[nodiscard]] FileReader open(const std::string& path, int nthreads,
+                                  const ReadOptions& options);
     [[nodiscard]] OIIO::ImageBuf read_all_stored();
     /// The resized picture.
     [[nodiscard]] const OIIO::ImageBuf& resized();
-    /// Rows as the file has them, in the delivered order of channels.
-    void read_stored(int ybegin, int yend, std::byte* to);
 
     std::string path_;
-    int subimage_ = 0;
-    std::string bytes_;                                  // of a file that is read from memory
-    std::unique_ptr<OIIO::Filesystem::IOProxy> memory_;  // outlives the reader
-    std::unique_ptr<OIIO::ImageInput> in_;
-    OIIO::ImageSpec spec_;              // of what is delivered
-    OIIO::ImageSpec stored_;            // before conversion
-    int stored_channels_ = 0;           // of the file
-    std::vector<int> channels_;         // of the file that are delivered; empty: all in their order
-    std::vector<std::byte> scratch_;    // rows with all channels
-    std::optional<SourceColor> color_;  // to convert from; none: no conversion
+    InputRows* input_ = nullptr;  // of `file_`; null: a reader of this program
+    FileReader file_;
+    OIIO::ImageSpec spec_;                    // of what is delivered
+    OIIO::ImageSpec stored_;                  // before conversion
+    std::optional<SourceColor> color_;        // to convert from; none: no conversion
     std::optional<TonemapOptions> resizing_;  // none: no resizing
     std::optional<OIIO::ImageBuf> resized_;
     int nthreads_ = 0;
@@ -133,17 +121,9 @@ class TONEWRIGHT_API PictureReader {
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture,
                                                           int ybegin, int yend);
 
-/// The note and the warnings about what a header says go to the callbacks of `options`.
-TONEWRIGHT_API void report_header(const OIIO::ImageSpec& spec, std::string_view input,
-                                  const ReadOptions& options);
-
 /// Reads a picture to its end and discards it.
 /// @throws FileError  it is not complete
 TONEWRIGHT_API void check_is_complete(PictureReader& reader);
-
-/// Pixel type of an OpenEXR file for a picture of another type: half for half and for 8 bits, whose
-/// codes the 11 significant bits of half tell apart, else float.
-[[nodiscard]] TONEWRIGHT_API OIIO::TypeDesc openexr_type(const OIIO::TypeDesc& source);
 
 /// write_image_atomically() of a picture that is made from one of the pixel type `source`.
 /// @see PictureWriter::keep_type
@@ -151,24 +131,15 @@ TONEWRIGHT_API void write_result_atomically(const OIIO::ImageBuf& image, const s
                                             const WriteOptions& options,
                                             const OIIO::TypeDesc& source);
 
-/// Writes a picture from its first row to its last under a temporary name, and renames it when it
-/// is complete. @see write_image_atomically
+/// FileWriter for pictures of OpenImageIO, in all of its formats.
 class TONEWRIGHT_API PictureWriter {
   public:
-    /// Changes nothing yet.
     /// @param nthreads  0: OIIO's `threads` attribute
-    /// @throws FileError  unknown extension, or a path where no file can be
-    /// @throws Error      compression or quality that the format does not have
+    /// @throws FileError, Error  @see FileWriter
     explicit PictureWriter(const std::string& path, WriteOptions options = {}, int nthreads = 0);
-    /// Removes an unfinished file.
-    ~PictureWriter();
-    PictureWriter(const PictureWriter&) = delete;
-    PictureWriter& operator=(const PictureWriter&) = delete;
 
-    /// Before opening: the picture is made from one of this pixel type. If the options state none,
-    /// an OpenEXR file has openexr_type(). Other formats keep their own defaults.
-    /// @param source  UNKNOWN: changes nothing
-    void keep_type(const OIIO::TypeDesc& source);
+    /// @see FileWriter
+    void keep_type(const OIIO::TypeDesc& source) { writer_.keep_type(source); }
     /// The size of a picture in a file, and its pixel type if the format can be asked without a
     /// file (else UNKNOWN). Changes nothing.
     /// @throws FileError
@@ -176,85 +147,16 @@ class TONEWRIGHT_API PictureWriter {
     /// @param picture  the spec of all rows together.
     /// @throws FileError
     void open(const OIIO::ImageSpec& picture);
-    /// After opening: the better pixel type for the rows, half or float. Both give the same file.
-    [[nodiscard]] OIIO::TypeDesc row_type() const;
-    /// True if files of the format store Exif's orientation and programs follow it. Others need
-    /// upright pixels.
-    [[nodiscard]] bool keeps_orientation() const;
-    /// After opening: true if the format takes the last row first.
-    [[nodiscard]] bool is_bottom_up() const;
     /// The next rows of the picture, or the picture.
     /// @throws FileError
     void write_rows(const OIIO::ImageBuf& rows);
     /// @throws FileError
     void finish();
+    [[nodiscard]] FileWriter& rows() { return writer_; }
 
   private:
-    [[noreturn]] void fail(const std::string& reason) const;
-    [[noreturn]] void fail(const Problem& why) const;
-    void check_disk() const;
-    /// OpenEXR 3.1 forgets that it could not compress a block of rows, such as without memory: it
-    /// writes no more of this call, and takes later rows from before the given ones.
-    void check_blocks() const;
-    [[nodiscard]] OIIO::ImageSpec plan(const OIIO::ImageSpec& picture);
-    /// Opens the writer of our own for a new, empty file, if there is one for the picture.
-    /// @param chunks  of a PNG file, after its header
-    [[nodiscard]] std::unique_ptr<RowWriter> own_writer(int file, const OIIO::ImageSpec& spec,
-                                                        const std::string& chunks) const;
-    void open_by_openimageio(const OIIO::ImageSpec& spec, const std::string& chunks);
-    void plan_alpha(OIIO::ImageSpec& spec);
-    void plan_channels(OIIO::ImageSpec& spec, const FormatLimits& limits);
-    void plan_window(OIIO::ImageSpec& spec, const OIIO::ImageSpec& picture,
-                     const FormatLimits& limits);
-    void plan_cover(OIIO::ImageSpec& spec, const OIIO::ImageSpec& picture,
-                    const FormatLimits& limits);
-    void plan_type(OIIO::ImageSpec& spec, const OIIO::ImageSpec& picture,
-                   const FormatLimits& limits) const;
-    [[nodiscard]] OIIO::ImageBuf select_channels(const OIIO::ImageBuf& picture) const;
-    [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
-    [[nodiscard]] std::string_view format() const;
-    /// The format, or `avif`.
-    [[nodiscard]] std::string_view codec() const;
-    /// Limitations of the file, in one warning.
-    void warn_of_limits(const OIIO::ImageSpec& requested, const std::string& missing) const;
-    [[nodiscard]] std::string cut_off(const OIIO::ImageSpec& picture) const;
-    void watch_cover(const OIIO::ImageBuf& rows);
-    void warn_of_cover() const;
-    [[nodiscard]] OIIO::ImageBuf over_background(const OIIO::ImageBuf& rows) const;
-    /// Counts pixels whose color is beyond the range of half.
-    void watch_range(const OIIO::ImageBuf& rows);
-    void warn_of_range() const;
-    void write_part(const OIIO::ImageBuf& rows);
-    void write_fitted(const OIIO::ImageBuf& rows);
-
     std::string path_;
-    WriteOptions options_;
-    unsigned threads_ = 1;              // of a writer of ours
-    std::vector<int> channels_;         // to write; empty: all
-    int alpha_ = -1;                    // of those that are written
-    bool watches_cover_ = false;        // warns if alpha is 0 everywhere
-    bool has_cover_ = false;            // alpha is not 0 everywhere
-    float surface_light_ = 1;           // the most of an opaque surface
-    bool becomes_straight_ = false;     // the file divides color by alpha
-    bool multiplies_by_alpha_ = false;  // the picture has straight alpha, and the file has not
-    double pixel_count_ = 0;            // of what is written
-    double lost_count_ = 0;             // pixels whose light straight alpha cannot hold
-    double beyond_half_count_ = 0;      // pixels whose color is infinite as half
-    std::optional<OIIO::ROI> window_;   // to write; none: all of the picture
-    bool divides_by_alpha_ = false;
-    std::vector<float> kept_;  // what was written, for WriteOptions::verifies
-    int last_row_ = 0;         // of the picture, exclusive
-    int next_row_ = 0;         // of the window, or of the picture
-    int rows_written_ = 0;
-    int rows_of_block_ = 0;                          // of an OpenEXR file, else 0
-    std::unique_ptr<LightLevelMeter> light_levels_;  // of a PNG file in PQ or HLG, else null
-    std::size_t light_levels_place_ = 0;             // of their chunk in the file
-    // The order matters: at its end, the writer writes to the file.
-    std::unique_ptr<AtomicFile> temporary_;
-    std::unique_ptr<OutputFile>
-        proxy_;                       // of OpenImageIO's writers that do not open files themselves
-    std::unique_ptr<OpenFile> file_;  // of a writer of ours, else null
-    std::unique_ptr<OIIO::ImageOutput> out_;
+    FileWriter writer_;
 };
 
 TONEWRIGHT_NAMESPACE_END

@@ -53,13 +53,4 @@ OIIO::ImageBuf black_picture(const OIIO::ImageSpec& spec) {
     return picture;
 }
 
-void multiply_by_alpha(OIIO::ImageBuf& picture) {
-    const int alpha = picture.spec().alpha_channel;
-    const int colors = std::min(alpha, 3);
-    for (OIIO::ImageBuf::Iterator<float> p(picture); !p.done(); ++p) {
-        for (int c = 0; c < colors; ++c)
-            p[c] = p[c] * p[alpha];
-    }
-}
-
 TONEWRIGHT_NAMESPACE_END

@@ -25,9 +25,6 @@ TONEWRIGHT_API void check_was_read(const OIIO::ImageBuf& source, bool is_complet
 /// @throws std::bad_alloc
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf black_picture(const OIIO::ImageSpec& spec);
 
-/// Multiplies color by alpha, in a float picture in memory.
-TONEWRIGHT_API void multiply_by_alpha(OIIO::ImageBuf& picture);
-
 /// Finds the spans of a picture. One for each thread.
 class TONEWRIGHT_API SpanReader {
   public:

@@ -58,17 +58,17 @@ void pass_rows(const Tonemapper& tonemapper, PictureReader& reader, PictureWrite
     PictureSpec result = rows.result_spec(picture_spec(reader.spec()));
     give_date(result, in);
     if (options.write_provenance) add_provenance(result, tonemapper.options(), resize);
-    writer.open(image_spec(result));
+    FileWriter& file = writer.rows();
+    file.open(result);
     pass.result = with_color_metadata_alone(result);
-    pass.result.format = writer.row_type();
-    pass.is_bottom_up = writer.is_bottom_up();
+    pass.result.format = file.row_type();
+    pass.is_bottom_up = file.is_bottom_up();
     pass.nthreads = nthreads;
     pass.step = rows_of_batch(pass.source.scanline_bytes() + pass.result.scanline_bytes(),
                               reader.row_step(), pass.source.height, batch_bytes);
     pass.read = [&](int ybegin, int yend, std::byte* to) { reader.read_rows(ybegin, yend, to); };
-    const ImageSpec written = image_spec(pass.result);
-    pass.write = [&](int ybegin, int yend, std::byte* from) {
-        writer.write_rows(ImageBuf(spec_of_rows(written, ybegin, yend), from));
+    pass.write = [&](int ybegin, int yend, const std::byte* from) {
+        file.write_rows({ybegin, yend, pass.result.format, from});
     };
     pass.run(rows);
     writer.finish();
@@ -88,7 +88,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     (void)channel_layout(
         picture_spec(reader.spec()));  // reports wrong channels before it reads them
     writer.keep_type(type);
-    report_header(reader.spec(), tonemapper.options().input, read);
+    report_header(picture_spec(reader.spec()), tonemapper.options().input, read);
     if (read.header) read.header(reader.spec());
     if (read.warn) {
         const std::string text =
@@ -97,7 +97,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     }
     reader.convert_colors(tonemapper.options());
     const bool turns =
-        orientation_of(picture_spec(reader.spec())) != 1 && !writer.keeps_orientation();
+        orientation_of(picture_spec(reader.spec())) != 1 && !writer.rows().keeps_orientation();
     if (reader.spec().depth > 1 || tonemapper.needs_whole_picture() || turns) {
         ImageBuf source = reader.read_all();
         if (turns) source = upright(std::move(source));

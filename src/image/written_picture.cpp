@@ -36,8 +36,8 @@ std::string without_name(const std::string& text, const std::string& name) {
     return text.starts_with(begin) ? text.substr(begin.size()) : text;
 }
 
-std::string fault_of_size(const WrittenPicture& written, const ImageSpec& is) {
-    const ImageSpec& requested = written.spec;
+std::string fault_of_size(const WrittenFile& written, const ImageSpec& is) {
+    const PictureSpec& requested = written.spec;
     const auto differs = [&](const char* what, const auto& found, const auto& expected) {
         return fmt::format("what was written reads back with {} {}; expected {}", what, found,
                            expected);
@@ -52,7 +52,7 @@ std::string fault_of_size(const WrittenPicture& written, const ImageSpec& is) {
     if (is.nchannels != requested.nchannels && !adds_alpha && !drops_alpha)
         return differs("channels", is.nchannels, requested.nchannels);
     if (is.format != requested.format && written.format != "fits")
-        return differs("type", is.format.c_str(), requested.format.c_str());
+        return differs("type", is.format.c_str(), name_of(requested.format));
     if (format_limits(written.format).windows != FileWindows::none &&
         (is.x != requested.x || is.y != requested.y || is.full_width != requested.full_width ||
          is.full_height != requested.full_height)) {
@@ -66,7 +66,7 @@ std::string fault_of_size(const WrittenPicture& written, const ImageSpec& is) {
 }
 
 /// The file keeps every code value.
-bool is_lossless(const WrittenPicture& written) {
+bool is_lossless(const WrittenFile& written) {
     const std::string compression = written.spec.get_string_attribute("compression");
     constexpr std::array<std::string_view, 7> kLossless = {"none", "rle", "zip",     "zips",
                                                            "piz",  "lzw", "packbits"};
@@ -80,8 +80,8 @@ bool is_lossless(const WrittenPicture& written) {
 }
 
 /// @returns  the difference from what was to be written; empty if there is none
-std::string fault_of_pixels(const WrittenPicture& written, const ImageBuf& is) {
-    const ImageSpec& requested = written.spec;
+std::string fault_of_pixels(const WrittenFile& written, const ImageBuf& is) {
+    const PictureSpec& requested = written.spec;
     const std::vector<float>& kept = *written.pixels;
     const bool is_exact = is_lossless(written);
     const OIIO::TypeDesc type = requested.format;
@@ -137,7 +137,7 @@ std::string fault_of_pixels(const WrittenPicture& written, const ImageBuf& is) {
     return "";
 }
 
-std::string fault_of_file(const WrittenPicture& written) {
+std::string fault_of_file(const WrittenFile& written) {
     PictureReader reader(written.path, 0, ReadOptions{.max_pixels = kUnlimited});
     if (std::string fault = fault_of_size(written, reader.spec()); !fault.empty()) return fault;
     if (written.pixels) return fault_of_pixels(written, reader.read_all().copy(OIIO::TypeFloat));
@@ -152,8 +152,8 @@ std::string fault_of_file(const WrittenPicture& written) {
 
 }  // namespace
 
-std::string fault_of(const WrittenPicture& written) {
-    if (written.is_avif && !brand_of(written.path).starts_with("avi")) {
+std::string fault_of(const WrittenFile& written) {
+    if (written.codec == "avif" && !brand_of(written.path).starts_with("avi")) {
         return "this OpenImageIO writes HEVC under the name of AVIF, not AV1; write a PNG file, "
                "and "
                "use avifenc";

@@ -177,8 +177,10 @@ class ExrReader final : public RowReader {
         : file_(std::move(file)), parts_(std::move(parts)), threads_(threads) {}
 
     void use_threads(unsigned count) override { threads_ = count; }
-    [[nodiscard]] int picture_count() const override { return static_cast<int>(parts_.size()); }
-    [[nodiscard]] const PictureSpec& spec(int picture) const override {
+    [[nodiscard]] bool has_picture(int number) override {
+        return number >= 0 && static_cast<std::size_t>(number) < parts_.size();
+    }
+    [[nodiscard]] const PictureSpec& spec(int picture) override {
         return parts_[static_cast<std::size_t>(picture)].spec;
     }
 

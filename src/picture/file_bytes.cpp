@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/file_bytes.h"
 
+#include <sys/types.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,6 +10,23 @@
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+int OpenFile::patch(std::size_t place, std::string_view bytes) const {
+    while (!bytes.empty()) {
+        const ::ssize_t written =
+            ::pwrite(file_, bytes.data(), bytes.size(), static_cast<::off_t>(place));
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return written < 0 ? errno : EIO;
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+        place += static_cast<std::size_t>(written);
+    }
+    return 0;
+}
+
+int OpenFile::close() {
+    if (file_ < 0) return 0;
+    return ::close(std::exchange(file_, -1)) == 0 ? 0 : errno;
+}
 
 void write_all(int file, const void* bytes, std::size_t count) {
     const auto* from = static_cast<const char*>(bytes);

@@ -2,10 +2,33 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
+#include <utility>
 
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+/// A file that is open for writing.
+class OpenFile {
+  public:
+    explicit OpenFile(int file) : file_(file) {}
+    ~OpenFile() { (void)close(); }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+
+    /// Replaces bytes that were written.
+    /// @returns  0 or an errno
+    [[nodiscard]] int patch(std::size_t place, std::string_view bytes) const;
+    /// @returns  0 or an errno
+    [[nodiscard]] int close();
+    /// Gives the descriptor to another owner.
+    [[nodiscard]] int release() { return std::exchange(file_, -1); }
+    [[nodiscard]] int descriptor() const { return file_; }
+
+  private:
+    int file_;
+};
 
 /// Passes all bytes to the system.
 /// @throws FileError  with the system's reason and its number

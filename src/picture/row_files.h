@@ -18,9 +18,11 @@ class RowReader {
 
     /// @param count  threads that decode; 0: as many as are idle
     virtual void use_threads(unsigned count) = 0;
-    [[nodiscard]] virtual int picture_count() const = 0;
+    /// @param number  from 0
+    [[nodiscard]] virtual bool has_picture(int number) = 0;
     /// Size, channels and attributes as OpenImageIO's reader gives them.
-    [[nodiscard]] virtual const PictureSpec& spec(int picture) const = 0;
+    /// @pre has_picture()
+    [[nodiscard]] virtual const PictureSpec& spec(int picture) = 0;
     /// Rows [ybegin, yend) of all channels in the order and in the type of the spec, interleaved
     /// and packed; full resolution.
     /// @param ybegin  y of the first row; a multiple of `tile_height` from the spec's y on
@@ -45,6 +47,8 @@ class RowWriter {
     /// After the last row: the file is complete and was passed to the system.
     /// @throws FileError  as write_rows()
     virtual void finish() = 0;
+    /// A library opened the file by its name, and reports no full disk.
+    [[nodiscard]] virtual bool is_opened_by_name() const { return false; }
 };
 
 TONEWRIGHT_NAMESPACE_END

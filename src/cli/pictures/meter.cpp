@@ -17,6 +17,7 @@
 #include "cli/pictures/requests.h"
 #include "cli/progress.h"
 #include "image/picture_file.h"
+#include "image/spec_conversion.h"
 #include "plot/terminal_plot.h"
 #include "tasks/json.h"
 #include "tasks/pictures/frames.h"
@@ -199,7 +200,7 @@ void tell_header(const std::string& path, const MeterCommandOptions& options) {
     {
         const QuietStderr quiet;
         const PictureReader reader(path, 1, read);
-        report_header(reader.spec(), options.light.input, read);
+        report_header(picture_spec(reader.spec()), options.light.input, read);
     }
     messages.print();
 }

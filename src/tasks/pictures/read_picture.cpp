@@ -25,7 +25,7 @@ OIIO::ImageBuf read_picture(const std::string& path, const ReadOptions& read,
     OIIO::ImageBuf stored = read_image(path, read);
     OIIO::ImageBuf picture =
         with_memory_for(path, [&] { return with_associated_alpha(upright(std::move(stored))); });
-    about_picture(path, [&] { report_header(picture.spec(), input, read); });
+    about_picture(path, [&] { report_header(picture_spec(picture.spec()), input, read); });
     return picture;
 }
 

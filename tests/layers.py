@@ -35,7 +35,8 @@ for folder, direct in {
     "tasks": ["report", "verify"],  # what the command and the Python module do
     "tasks/pictures": ["tasks", "image"],
     "cli": ["plot", "tasks", "shader_runs"],
-    "cli/pictures": ["cli", "tasks/pictures"],  # the module that the program loads
+    "cli/rows": ["cli", "picture"],  # the module that needs no OpenImageIO
+    "cli/pictures": ["cli/rows", "tasks/pictures"],  # the module of all picture commands
     "tools": ["cli"],
     "plugin": ["image"],
     "python": ["tasks/pictures", "shader_runs"],
@@ -45,7 +46,7 @@ for folder, direct in {
 PUBLIC = {
     "version": "base", "error": "base", "span": "base", "generated_files": "base", "expr": "expr", "color": "color",
     "pipeline": "pipeline", "view": "pipeline", "input_encoding": "pipeline", "source_color": "pipeline", "format_color": "pipeline", "engine": "engine", "local": "local", "registry": "registry", "engines": "registry", "definition": "definition",
-    "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image", "tonemap_options": "picture",
+    "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image", "tonemap_options": "picture", "picture_options": "picture",
     "image_io": "image", "chart": "image", "contact_sheet": "image", "sequence": "image", "meter": "image",
     "shader": "shader", "verify": "verify", "lint": "verify", "lut_match": "verify",
 }
@@ -57,7 +58,7 @@ THIRD_PARTY = {
     "jpeglib.h": ["picture"],
     "png.h": ["picture"],
     "zlib.h": ["picture"],
-    "OpenImageIO": ["picture", "image", "tasks/pictures", "cli/pictures", "plugin", "python"],
+    "OpenImageIO": ["picture", "image", "tasks/pictures", "cli/rows", "cli/pictures", "plugin", "python"],
     "EGL": ["ocio"],
     "yaml-cpp": ["ocio"],
     "lcms2.h": ["lut"],
@@ -69,10 +70,10 @@ THIRD_PARTY = {
     "nlohmann": ["tasks/json.cpp"],
     "toml++": ["definition/toml_text.cpp"],
     "pybind11": ["python"],
-    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "picture", "image", "verify", "shader_runs", "plot", "tasks", "tasks/pictures", "cli", "cli/pictures", "tools", "plugin", "python"],
+    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "picture", "image", "verify", "shader_runs", "plot", "tasks", "tasks/pictures", "cli", "cli/rows", "cli/pictures", "tools", "plugin", "python"],
 }
 # They have names of their own for the parameters of a request.
-FRONT_ENDS = {"cli", "cli/pictures", "tools", "python", "plugin", "definition"}
+FRONT_ENDS = {"cli", "cli/rows", "cli/pictures", "tools", "python", "plugin", "definition"}
 # A text that names one of them before an option is about theirs, which may have the same name.
 OTHER_PROGRAMS = re.compile(r"\b(?:oiiotool|mpv|ffmpeg|gmic|tificc)\b")
 # Lists of arguments of other programs are no texts.

@@ -117,7 +117,12 @@ void add_apply(CommandLine& program) {
         "  tonewright apply *.exr -o out/ --format png --operator \"AgX Punchy\"\n"
         "  tonewright apply shot.####.exr out.####.png --frames 1001-1100\n"
         "  tonewright apply render.exr out.png --lut agx.cube --input-encoding acescct");
-    command.action([options] { return picture_commands().apply(*options); }, &options->given);
+    command.action(
+        [options]() -> int {
+            if (row_commands().apply(*options)) return kOk;
+            return picture_commands().apply(*options);
+        },
+        &options->given);
 }
 
 TONEWRIGHT_NAMESPACE_END

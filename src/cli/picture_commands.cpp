@@ -30,14 +30,16 @@ std::optional<double> address_limit() {
 
 std::atomic<bool> is_loading = false;
 
-/// The module stays loaded until the process ends.
-const PictureCommands& load() {
+/// A module stays loaded until the process ends.
+/// @param name  picture_commands or row_commands
+template <class Commands>
+const Commands& load(const std::string& name) {
     namespace fs = std::filesystem;
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
     if (error) throw FileError("start: /proc/self/exe: " + error.message());
     const std::string path =
-        (self.parent_path() / TONEWRIGHT_LIBEXEC / "picture_commands.so").lexically_normal();
+        (self.parent_path() / TONEWRIGHT_LIBEXEC / (name + ".so")).lexically_normal();
     const auto fail = [&](const std::string& reason) {
         throw FileError("start: cannot load the picture commands: " + reason);
     };
@@ -55,9 +57,9 @@ const PictureCommands& load() {
                         *limit));
     }
     if (!module) fail(::dlerror());
-    using Entry = decltype(&tonewright_picture_commands);
-    const auto entry = reinterpret_cast<Entry>(::dlsym(module, kPictureCommandsEntry));
-    const PictureCommands* commands = entry ? entry(kPictureCommandsBuild) : nullptr;
+    using Entry = const Commands* (*)(const char* build);
+    const auto entry = reinterpret_cast<Entry>(::dlsym(module, ("tonewright_" + name).c_str()));
+    const Commands* commands = entry ? entry(kPictureCommandsBuild) : nullptr;
     if (!commands)
         fail(path + ": belongs to another build; expected " + std::string(kPictureCommandsBuild));
     commands->use_messages(message_options());
@@ -69,7 +71,12 @@ const PictureCommands& load() {
 bool is_loading_under_limit() noexcept { return is_loading; }
 
 const PictureCommands& picture_commands() {
-    static const PictureCommands& commands = load();
+    static const auto& commands = load<PictureCommands>("picture_commands");
+    return commands;
+}
+
+const RowCommands& row_commands() {
+    static const auto& commands = load<RowCommands>("row_commands");
     return commands;
 }
 

@@ -153,6 +153,8 @@ class TONEWRIGHT_API PictureWriter {
     /// @throws FileError
     void finish();
     [[nodiscard]] FileWriter& rows() { return writer_; }
+    /// Readers that use OpenImageIO's shared cache get the new file. finish() does it.
+    void forget_cached() const;
 
   private:
     std::string path_;

@@ -62,7 +62,10 @@ void PictureWriter::write_rows(const OIIO::ImageBuf& rows) {
 
 void PictureWriter::finish() {
     writer_.finish();
-    // Readers that use OIIO's shared cache get the new file.
+    forget_cached();
+}
+
+void PictureWriter::forget_cached() const {
     auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one
     if (!cache) return;                           // no memory for a first one
     cache->invalidate(OIIO::ustring(path_));

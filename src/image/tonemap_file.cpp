@@ -46,36 +46,6 @@ ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
     return image_spec(rows_of(tonemapper).result_spec(picture_spec(source)));
 }
 
-namespace {
-
-/// Writes the result of a picture that is read a few rows at a time.
-void pass_rows(const Tonemapper& tonemapper, PictureReader& reader, PictureWriter& writer,
-               const WriteOptions& options, const std::string& resize, int nthreads,
-               std::size_t batch_bytes, const std::string& in) {
-    const RowTonemapper& rows = rows_of(tonemapper);
-    RowPass pass;
-    pass.source = with_color_metadata_alone(picture_spec(reader.spec()));
-    PictureSpec result = rows.result_spec(picture_spec(reader.spec()));
-    give_date(result, in);
-    if (options.write_provenance) add_provenance(result, tonemapper.options(), resize);
-    FileWriter& file = writer.rows();
-    file.open(result);
-    pass.result = with_color_metadata_alone(result);
-    pass.result.format = file.row_type();
-    pass.is_bottom_up = file.is_bottom_up();
-    pass.nthreads = nthreads;
-    pass.step = rows_of_batch(pass.source.scanline_bytes() + pass.result.scanline_bytes(),
-                              reader.row_step(), pass.source.height, batch_bytes);
-    pass.read = [&](int ybegin, int yend, std::byte* to) { reader.read_rows(ybegin, yend, to); };
-    pass.write = [&](int ybegin, int yend, const std::byte* from) {
-        file.write_rows({ybegin, yend, pass.result.format, from});
-    };
-    pass.run(rows);
-    writer.finish();
-}
-
-}  // namespace
-
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                         const WriteOptions& write, const ReadOptions& read, int nthreads,
                         std::size_t batch_bytes) {
@@ -119,8 +89,19 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
             measure_file(in, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
                 .statistics());
     }
-    pass_rows(own ? *own : tonemapper, reader, writer, write, read.resize, nthreads, batch_bytes,
-              in);
+    const PictureSpec source = picture_spec(reader.spec());
+    tonemap_to_file(
+        rows_of(own ? *own : tonemapper),
+        {.source = source,
+         .read = [&](int ybegin, int yend, std::byte* to) { reader.read_rows(ybegin, yend, to); },
+         .row_step = reader.row_step(),
+         .path = in,
+         .writes_provenance = write.write_provenance,
+         .resize = read.resize,
+         .nthreads = nthreads,
+         .batch_bytes = batch_bytes},
+        writer.rows());
+    writer.forget_cached();
 }
 
 void check_overwriting(const std::vector<FrameFiles>& files, bool is_in_place) {

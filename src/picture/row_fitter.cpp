@@ -153,6 +153,17 @@ void multiply_by_alpha(float* pixels, std::size_t count, std::size_t channels, i
     }
 }
 
+void take_alpha(TonemapOptions& tonemap, const WriteOptions& write) {
+    const bool is_ignored = write.alpha == WriteOptions::Alpha::ignore;
+    if (!is_ignored && write.alpha != WriteOptions::Alpha::opaque) return;
+    if (tonemap.unpremult == TonemapOptions::Unpremult::yes) {
+        throw Error({.parameter = "alpha",
+                     .value = is_ignored ? "ignore" : "opaque",
+                     .expected = "keep with <<unpremult=yes>>, which divides by alpha"});
+    }
+    tonemap.unpremult = TonemapOptions::Unpremult::no;
+}
+
 RowFitter::RowFitter(std::string_view format, std::string_view codec, WriteOptions options)
     : format_(format), codec_(codec), options_(std::move(options)) {}
 

@@ -13,6 +13,7 @@
 #include "picture/format_limits.h"
 #include "picture/picture_spec.h"
 #include "tonewright/picture_options.h"
+#include "tonewright/tonemap_options.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -100,6 +101,10 @@ class TONEWRIGHT_API RowFitter {
 /// Pixel type of an OpenEXR file for a picture of another type: half for half and for 8 bits, whose
 /// codes the 11 significant bits of half tell apart, else float.
 [[nodiscard]] TONEWRIGHT_API OIIO::TypeDesc openexr_type(const OIIO::TypeDesc& source);
+
+/// Without alpha, color is taken as it is: sets `unpremult` for pictures whose alpha is left out.
+/// @throws Error  color is to be divided by that alpha
+TONEWRIGHT_API void take_alpha(TonemapOptions& tonemap, const WriteOptions& write);
 
 /// Multiplies color by alpha.
 /// @param pixels  interleaved

@@ -33,6 +33,7 @@
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
 #include "picture/picture_error.h"
+#include "picture/row_fitter.h"
 #include "shader_runs/shader_run.h"
 #include "tasks/bake.h"
 #include "tasks/config.h"

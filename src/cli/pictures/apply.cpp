@@ -22,10 +22,12 @@
 #include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
-#include "cli/pictures/picture_messages.h"
+#include "cli/pictures/reading.h"
 #include "cli/pictures/requests.h"
 #include "cli/pictures/standard_streams.h"
 #include "cli/progress.h"
+#include "cli/rows/apply_request.h"
+#include "cli/rows/picture_messages.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
 #include "image/spec_conversion.h"
@@ -122,43 +124,18 @@ ApplyFiles files_of(const ApplyOptions& options) {
 }
 
 /// @throws Error  the file name cannot have this output; checked before a large picture is read
-WriteOptions write_options_of(const ApplyOptions& options, const std::string& out) {
-    WriteOptions write;
-    if (!options.type.empty()) set_pixel_type(write, options.type);
-    set_alpha(write, options.alpha);
-    write.compression = options.compression;
-    write.quality = options.quality;
-    write.subsampling = options.subsampling;
-    write.verifies = options.verifies_output;
-    if (options.picture.max_pixels) write.max_pixels = *options.picture.max_pixels;
-    write.write_provenance = !options.has_no_metadata;
+WriteOptions checked_write_options(const ApplyOptions& options, const std::string& out) {
+    WriteOptions write = write_options_of(options);
     if (write.bits > 0 || options.given.contains("--compression") ||
         options.given.contains("--quality") || options.given.contains("--subsampling"))
         (void)PictureWriter(out, write);
     return write;
 }
 
-ReadOptions read_options_of(const ApplyOptions& options) {
+ReadOptions with_resize(const ApplyOptions& options) {
     ReadOptions read = read_options_of(options.picture);
     read.resize = options.resize;
     return read;
-}
-
-/// All but the operator.
-TonemapOptions tonemap_options_of(const ApplyOptions& options, const WriteOptions& write) {
-    TonemapOptions tonemap;
-    tonemap.exposure_stops = options.exposure;
-    tonemap.input = options.input;
-    tonemap.display = options.display;
-    tonemap.reference_white = options.reference_white;
-    tonemap.input_units = parse_input_units(options.input_units);
-    tonemap.unpremult = alpha_of(options.picture);
-    tonemap.dither = options.dither;
-    tonemap.mix = options.mix;
-    if (find_choice("statistics", options.statistics, {"picture", "sequence", "defaults"}) == 2)
-        tonemap.statistics = TonemapOptions::Statistics::defaults;
-    take_alpha(tonemap, write);
-    return tonemap;
 }
 
 bool takes_sequence(const ApplyOptions& options) {
@@ -213,7 +190,7 @@ int apply_lut(const ApplyOptions& options, const ApplyFiles& files) {
     const LutFile lut = with_memory_for(options.lut.file, [&] {
         return open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
     });
-    const WriteOptions write = write_options_of(options, files.files.front().out);
+    const WriteOptions write = checked_write_options(options, files.files.front().out);
     const TonemapOptions light = tonemap_options_of(options, write);
     check_overwriting(files.files, options.is_in_place);
     std::optional<LutOptions> stated;  // the first picture finds the input, and says so
@@ -223,7 +200,7 @@ int apply_lut(const ApplyOptions& options, const ApplyFiles& files) {
         PictureMessages messages({}, file.out);
         const LutSource source =
             lut_source(read_picture(file.in, options.picture, options.input), file.in, light,
-                       read_options_of(options), options.picture.threads);
+                       with_resize(options), options.picture.threads);
         if (!stated) stated = with_stated_input(options.lut, source.name);
         LutPictureRequest request = {
             .lut = lut,
@@ -295,25 +272,9 @@ std::size_t print_failures(const std::vector<FrameFiles>& files) {
     return failed;
 }
 
-/// True if the output has the pixel type of the input, because no option states one.
-bool keeps_type(const FrameFiles& file, const ApplyOptions& options) {
-    return options.type.empty() && extension_of(file.out) == ".exr";
-}
-
-/// " (half, as the input; -d float for 32 bits)"; empty if an option or the format decides.
-std::string kept_type_text(const FrameFiles& file, const ApplyOptions& options,
-                           const OIIO::TypeDesc& source) {
-    if (!keeps_type(file, options)) return {};
-    const OIIO::TypeDesc type = openexr_type(source);
-    const std::string why =
-        type == source ? "as the input" : fmt::format("which holds {}", source.c_str());
-    return fmt::format(" ({}, {}; {})", type.c_str(), why,
-                       type == OIIO::TypeHalf ? "-d float for 32 bits" : "-d half for 16 bits");
-}
-
 /// ", pixel types as the inputs; ...", for several files.
 std::string kept_type_text(const std::vector<FrameFiles>& files, const ApplyOptions& options) {
-    return says_what_was_done() && !files.empty() && keeps_type(files.front(), options)
+    return says_what_was_done() && !files.empty() && keeps_type(files.front().out, options)
                ? ", pixel types as the inputs (-d float for 32 bits)"
                : "";
 }
@@ -348,38 +309,7 @@ int print_summary(const Shot& shot, const ApplyOptions& options) {
     return failed.empty() ? kOk : kCheckFailed;
 }
 
-/// "render.exr (640 x 360 half, lin_rec709) -> out.png: AgX (agx_blender), exposure +1, sRGB,
-/// 0.12 s"
-/// @param header  none: another process tone mapped the picture, or it has a legend
-void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const ApplyOptions& given,
-                  const std::optional<OIIO::ImageSpec>& header, const ResultLine& line) {
-    if (!says_what_was_done()) return;
-    const TonemapOptions& options = tonemapper.options();
-    const ResolvedOperator& op = options.op;
-    const OIIO::ImageSpec spec =
-        header ? *header : PictureReader(file.in, 1, read_options_of(given.picture)).spec();
-    const PictureDescription said = describe_picture(picture_spec(spec), options.input);
-    std::string text = fmt::format(
-        "apply: {} ({} x {} {}, {} by {}) -> {}{}: {} ({}), exposure {:+.3g}, display "
-        "{}",
-        file.in, spec.width, spec.height, spec.format.c_str(), said.color.name, said.rule, file.out,
-        kept_type_text(file, given, spec.format), op.op->view, operator_text(op),
-        file.exposure_stops.value_or(options.exposure_stops), options.display);
-    if (!given.resize.empty()) {
-        const OIIO::ImageSpec size = resized_spec(spec, given.resize, kUnlimited);
-        text += fmt::format(", resized to {} x {}", size.full_width, size.full_height);
-    }
-    if (message_options().is_verbose) text += fmt::format(", {} threads", thread_count(0));
-    line.print(text);
-}
-
 // ---------------------------------------------------------------------------------------------
-
-void tell_default_operator(const ApplyOptions& options) {
-    if (!options.op.empty() || options.is_false_color || message_options().is_quiet) return;
-    print_message(fmt::format("apply: operator is {} ({}), the default; use --operator for another",
-                              kDefaultOperator, find_operator(kDefaultOperator).view));
-}
 
 /// Metering is the first part of the work: it reads the pictures, and writes none.
 constexpr double kMetered = 30;  // percent
@@ -516,7 +446,20 @@ int apply_to_picture(Tonemapper& tonemapper, const ApplyOptions& options,
     messages.print();
     if (exposure.rule) warn_of_histograms(metered, *exposure.rule, {.warn = warn});
     tell_default_operator(options);
-    print_result(file, tonemapper, options, header, result);
+    const OIIO::ImageSpec spec =
+        header ? *header : PictureReader(file.in, 1, read_options_of(options.picture)).spec();
+    std::string size;
+    if (!options.resize.empty()) {
+        const OIIO::ImageSpec resized = resized_spec(spec, options.resize, kUnlimited);
+        size = fmt::format(", resized to {} x {}", resized.full_width, resized.full_height);
+    }
+    print_result({.in = file.in,
+                  .out = file.out,
+                  .source = picture_spec(spec),
+                  .exposure_stops = file.exposure_stops,
+                  .resized = size,
+                  .threads = thread_count(0)},
+                 tonemapper.options(), options, result);
     return kOk;
 }
 
@@ -533,8 +476,8 @@ int run_on_files(ApplyOptions options) {
     const ResolvedOperator resolved = resolve_for_command(op, options.settings(), options.look);
     const FrameFiles first = files.files.front();
     SequenceOptions sequence;
-    sequence.write = write_options_of(options, first.out);
-    sequence.read = read_options_of(options);
+    sequence.write = checked_write_options(options, first.out);
+    sequence.read = with_resize(options);
     sequence.nthreads = options.picture.threads;
     TonemapOptions tonemap = tonemap_options_of(options, sequence.write);
     tonemap.op = resolved;

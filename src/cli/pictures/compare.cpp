@@ -9,9 +9,10 @@
 
 #include "base/input_file.h"
 #include "cli/pictures/commands.h"
-#include "cli/pictures/picture_messages.h"
+#include "cli/pictures/reading.h"
 #include "cli/pictures/requests.h"
 #include "cli/progress.h"
+#include "cli/rows/picture_messages.h"
 #include "image/contact_sheet.h"
 #include "ocio/model.h"
 #include "picture/picture_error.h"

@@ -8,8 +8,9 @@
 #include "base/strings.h"
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
-#include "cli/pictures/picture_messages.h"
 #include "cli/pictures/requests.h"
+#include "cli/rows/apply_request.h"
+#include "cli/rows/picture_messages.h"
 #include "tasks/pictures/read_picture.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

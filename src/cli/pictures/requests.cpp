@@ -9,7 +9,7 @@
 #include <system_error>
 #include <vector>
 
-#include "base/strings.h"
+#include "cli/rows/apply_request.h"
 #include "image/resize.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -53,18 +53,6 @@ OIIO::ROI parse_region(const std::string& text) {
 
 }  // namespace
 
-ReadOptions read_options_of(const PictureChoice& choice) {
-    ReadOptions options;
-    if (choice.subimage.starts_with('-')) {
-        throw Error("--subimage is " + printable(choice.subimage) +
-                    "; expected a number from 0, or a name");
-    }
-    options.subimage = choice.subimage;
-    options.layer = choice.layer;
-    options.max_pixels = choice.max_pixels.value_or(kMaxPixels);
-    return options;
-}
-
 void check_resize(const char* command, const std::string& resize, const PictureChoice& choice) {
     ResizeSize size;
     try {
@@ -77,12 +65,6 @@ void check_resize(const char* command, const std::string& resize, const PictureC
         throw Error(fmt::format("{}: --resize is {}; expected at most {:.0f} pixels (--max-pixels)",
                                 command, resize, most));
     }
-}
-
-TonemapOptions::Unpremult alpha_of(const PictureInput& input) {
-    if (input.unpremult) return TonemapOptions::Unpremult::yes;
-    if (input.no_unpremult) return TonemapOptions::Unpremult::no;
-    return TonemapOptions::Unpremult::automatic;
 }
 
 void use_threads(const PictureInput& input) {

@@ -12,9 +12,6 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The options of the library, without callbacks.
-[[nodiscard]] ReadOptions read_options_of(const PictureChoice& choice);
-[[nodiscard]] TonemapOptions::Unpremult alpha_of(const PictureInput& input);
 /// Sets the number of threads of OpenImageIO and OpenEXR. With a timeout, does nothing: the
 /// processes of the pictures have their own thread pools. @see run_contained
 void use_threads(const PictureInput& input);

@@ -110,17 +110,6 @@ OIIO::ImageBuf resized(const OIIO::ImageBuf& picture, const std::string& path,
 
 }  // namespace
 
-void take_alpha(TonemapOptions& tonemap, const WriteOptions& write) {
-    const bool is_ignored = write.alpha == WriteOptions::Alpha::ignore;
-    if (!is_ignored && write.alpha != WriteOptions::Alpha::opaque) return;
-    if (tonemap.unpremult == TonemapOptions::Unpremult::yes) {
-        throw Error({.parameter = "alpha",
-                     .value = is_ignored ? "ignore" : "opaque",
-                     .expected = "keep with <<unpremult=yes>>, which divides by alpha"});
-    }
-    tonemap.unpremult = TonemapOptions::Unpremult::no;
-}
-
 void tonemap_pictures(const Tonemapper& tonemapper, std::vector<FrameFiles>& files,
                       const SequenceOptions& options, double timeout) {
     std::vector<FrameFiles> open;

@@ -15,10 +15,6 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Without alpha, color is taken as it is: sets `unpremult` for pictures whose alpha is left out.
-/// @throws Error  color is to be divided by that alpha
-void take_alpha(TonemapOptions& tonemap, const WriteOptions& write);
-
 /// tonemap_files() for the files that have no problem yet.
 ///
 /// With a timeout, each file has its own process. Incomplete output of a killed process is removed,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tasks/pictures/read_picture.h"
+#include "picture/row_fitter.h"
 #include "tonewright/registry.h"
 #include "unit/errors.h"
 #include "unit/image/picture_files.h"

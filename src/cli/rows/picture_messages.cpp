@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/pictures/picture_messages.h"
+#include "cli/rows/picture_messages.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,9 +10,7 @@
 #include <cstdio>
 
 #include "cli/messages.h"
-#include "cli/pictures/requests.h"
 #include "picture/result_metadata.h"
-#include "tasks/pictures/read_picture.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -112,19 +110,6 @@ void PictureMessages::print() {
         for (const std::string& text : *texts)
             warn(text);
     }
-}
-
-OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice,
-                            std::string_view input) {
-    PictureMessages messages(path);
-    ReadOptions read = read_options_of(choice);
-    messages.attach_to(read);
-    OIIO::ImageBuf picture = [&] {
-        const QuietStderr quiet;
-        return read_picture(path, read, input);
-    }();
-    messages.print();
-    return picture;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <OpenImageIO/imagebuf.h>
-
 #include <map>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "cli/picture_options.h"
-#include "tonewright/tonemap.h"
+#include "tonewright/picture_options.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -56,9 +52,5 @@ class PictureMessages {
     std::vector<std::string> writing_;
     std::map<std::string, std::set<std::string>> finished_;  // pictures, by the reason
 };
-
-/// read_picture() of the tasks, which prints its messages.
-[[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice = {},
-                                          std::string_view input = kAutoInput);
 
 TONEWRIGHT_NAMESPACE_END

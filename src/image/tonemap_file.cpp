@@ -25,6 +25,7 @@
 #include "picture/row_pass.h"
 #include "picture/row_tonemapper.h"
 #include "picture/source_pixels.h"
+#include "picture/tonemap_to_file.h"
 #include "tonewright/image_io.h"
 #include "tonewright/tonemap.h"
 

@@ -84,7 +84,7 @@ class TONEWRIGHT_API FileWriter {
     void keep_type(const OIIO::TypeDesc& source) { fitter_.keep_type(source); }
     /// OpenImageIO's name.
     [[nodiscard]] const std::string& format() const { return format_; }
-    /// What a writer will be asked for. Changes nothing.
+    /// The spec that a writer will be asked for. Changes nothing.
     /// @throws FileError
     [[nodiscard]] PictureSpec planned(const PictureSpec& picture);
     /// @param picture  the spec of all rows together.

@@ -107,7 +107,7 @@ void put_over(ChangedRows& rows, int alpha, const std::array<float, 3>& backgrou
     }
 }
 
-/// As OIIO::ImageBufAlgo::unpremult(): all channels but alpha and depth.
+/// Does what OIIO::ImageBufAlgo::unpremult() does: all channels but alpha and depth.
 void divide_by_alpha(float* pixel, std::size_t count, std::size_t channels, int alpha, int depth) {
     for (std::size_t i = 0; i < count; ++i, pixel += channels) {
         const float cover = pixel[alpha];

@@ -5,11 +5,9 @@
 
 #include <cstddef>
 #include <functional>
-#include <string>
 
 #include "picture/picture_spec.h"
 #include "picture/row_tonemapper.h"
-#include "tonewright/picture_options.h"
 
 /// Tone mapping from file to file, in batches of rows. One thread reads the next batch, one tone
 /// maps, and one writes the previous batch. The number of batches is small, so memory does not grow
@@ -25,8 +23,6 @@ inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
 /// @param height  rows of the picture
 [[nodiscard]] TONEWRIGHT_API int rows_of_batch(std::size_t bytes_per_row, int step, int height,
                                                std::size_t batch_bytes = kBatchBytes);
-
-class FileWriter;
 
 /// One picture between two files.
 struct RowPass {
@@ -44,32 +40,5 @@ struct RowPass {
     /// @throws Error  the first error of a step
     void run(const RowTonemapper& tonemapper) const;
 };
-
-/// A picture that is read a few rows at a time, and its result.
-struct PictureToFile {
-    const PictureSpec& source;
-    RowPass::Rows read;
-    int row_step = 1;         // rows are read in multiples of it
-    const std::string& path;  // of the source
-    bool writes_provenance = false;
-    const std::string& resize;  // of ReadOptions, for the provenance
-    int nthreads = 1;
-    std::size_t batch_bytes = kBatchBytes;
-};
-/// Tone maps all rows, and completes the file.
-/// @throws Error  the first error of a step
-TONEWRIGHT_API void tonemap_to_file(const RowTonemapper& tonemapper, const PictureToFile& picture,
-                                    FileWriter& file);
-
-/// tonemap_file() for files that need no OpenImageIO: OpenEXR to OpenEXR, PNG or JPEG, row by row.
-/// @param header    receives the header of the picture, before anything is converted
-/// @param nthreads  1 or more
-/// @returns  false for a picture, a format or a conversion that needs OpenImageIO. Nothing was
-///           written, but `read` and `write` may have got messages.
-/// @throws Error  also what only OpenImageIO can do
-[[nodiscard]] TONEWRIGHT_API bool tonemap_own_file(
-    const RowTonemapper& tonemapper, const std::string& in, const std::string& out,
-    const WriteOptions& write, const ReadOptions& read,
-    const std::function<void(const PictureSpec&)>& header, int nthreads);
 
 TONEWRIGHT_NAMESPACE_END

@@ -19,8 +19,8 @@
 #include "cli/progress.h"
 #include "cli/rows/apply_request.h"
 #include "cli/rows/picture_messages.h"
-#include "picture/row_pass.h"
 #include "picture/row_tonemapper.h"
+#include "picture/tonemap_to_file.h"
 #include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -39,7 +39,7 @@ bool is_plain(const ApplyOptions& options) {
            !(options.given.contains("--operator") && trimmed(options.op).empty());
 }
 
-/// As OpenImageIO's attribute `threads`.
+/// The value of OpenImageIO's attribute `threads`.
 int thread_count(int wanted) {
     if (wanted == 0) {
         if (const char* const named = std::getenv("OPENIMAGEIO_THREADS"))

@@ -26,7 +26,7 @@ constexpr int kAllRows = 1 << 20;
 std::string write_ours(const std::string& path, const ImageSpec& spec,
                        const std::vector<float>& values, int batch = kAllRows,
                        unsigned threads = 2) {
-    const OpenFile file(path);
+    const TestFile file(path);
     const std::unique_ptr<RowWriter> writer = create_jpeg(file, picture_spec(spec), threads);
     if (!writer) return {};
     give_rows(*writer, TypeDesc::FLOAT, values, batch);
@@ -194,7 +194,7 @@ TEST(JpegWriter, BytesDependNeitherOnThreadsNorOnBatches) {
 
 TEST(JpegWriter, LeavesOtherPicturesToOpenImageIO) {
     const Folder folder;
-    const OpenFile file(folder / "a.jpg");
+    const TestFile file(folder / "a.jpg");
     const auto is_written = [&](ImageSpec spec,
                                 const std::function<void(ImageSpec&)>& change = {}) {
         if (change) change(spec);
@@ -221,7 +221,7 @@ TEST(JpegWriter, LeavesOtherPicturesToOpenImageIO) {
 
 TEST(JpegWriter, RefusalOfTheLibraryIsAnError) {
     const Folder folder;
-    const OpenFile file(folder / "a.jpg");
+    const TestFile file(folder / "a.jpg");
     const auto reason = [&](const ImageSpec& spec) -> std::string {
         try {
             const auto writer = create_jpeg(file, picture_spec(spec), 1);
@@ -240,10 +240,10 @@ TEST(JpegWriter, RefusalOfTheLibraryIsAnError) {
 TEST(JpegWriter, FullDiskIsAnError) {
     const Folder folder;
     const ImageSpec spec(300, 300, 3, TypeDesc::UINT8);
-    const OpenFile file(folder / "a.jpg");
+    const TestFile file(folder / "a.jpg");
     const std::unique_ptr<RowWriter> writer = create_jpeg(file, picture_spec(spec), 1);
     ASSERT_TRUE(writer);
-    const OpenFile full("/dev/full", O_WRONLY);
+    const TestFile full("/dev/full", O_WRONLY);
     ASSERT_GE(::dup2(full, file), 0);
     try {
         give_rows(*writer, TypeDesc::FLOAT, values_of(spec, Content::noise), 64);
@@ -255,7 +255,7 @@ TEST(JpegWriter, FullDiskIsAnError) {
 
 TEST(JpegWriter, MissingRowsAreAnError) {
     const Folder folder;
-    const OpenFile file(folder / "a.jpg");
+    const TestFile file(folder / "a.jpg");
     const std::unique_ptr<RowWriter> writer = create_jpeg(file, picture_spec(kSmall), 1);
     ASSERT_TRUE(writer);
     const std::vector<float> row(63);

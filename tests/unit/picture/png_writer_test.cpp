@@ -28,7 +28,7 @@ constexpr int kAllRows = 1 << 20;
 template <class T>
 std::string write_ours(const std::string& path, const ImageSpec& spec, const TypeDesc& type,
                        const std::vector<T>& values, int batch = kAllRows, unsigned threads = 2) {
-    const OpenFile file(path);
+    const TestFile file(path);
     const std::unique_ptr<RowWriter> writer = create_png(file, picture_spec(spec), threads);
     if (!writer) return {};
     give_rows(*writer, type, values, batch);
@@ -164,7 +164,7 @@ TEST(PngWriter, ChunksFollowTheHeader) {
     const ImageSpec spec = straight_spec(5, 3, 3, TypeDesc::UINT16);
     const std::string chunks = cicp_chunk({9, 16}) + clli_chunk({});
     {
-        const OpenFile file(path);
+        const TestFile file(path);
         const std::unique_ptr<RowWriter> writer = create_png(file, picture_spec(spec), 1, chunks);
         ASSERT_TRUE(writer);
         give_rows(*writer, TypeDesc::FLOAT, values_of(spec, Content::noise), 1);
@@ -175,7 +175,7 @@ TEST(PngWriter, ChunksFollowTheHeader) {
 
 TEST(PngWriter, SpecSaysWhatTheFileHolds) {
     const Folder folder;
-    const OpenFile file(folder / "a.png");
+    const TestFile file(folder / "a.png");
     ImageSpec spec(5, 3, 4, TypeDesc::HALF);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     const std::unique_ptr<RowWriter> writer = create_png(file, picture_spec(spec), 1);
@@ -186,7 +186,7 @@ TEST(PngWriter, SpecSaysWhatTheFileHolds) {
 
 TEST(PngWriter, LeavesOtherPicturesToOpenImageIO) {
     const Folder folder;
-    const OpenFile file(folder / "a.png");
+    const TestFile file(folder / "a.png");
     const auto is_written = [&](const ImageSpec& spec) {
         return create_png(file, picture_spec(spec), 1) != nullptr;
     };
@@ -210,7 +210,7 @@ TEST(PngWriter, LeavesOtherPicturesToOpenImageIO) {
 
 TEST(PngWriter, FullDiskIsAnError) {
     const ImageSpec spec = straight_spec(700, 700, 3, TypeDesc::UINT16);
-    const OpenFile full("/dev/full", O_WRONLY);
+    const TestFile full("/dev/full", O_WRONLY);
     const auto expect_full = [](const FileError& error) {
         EXPECT_EQ(error.problem().error_number, ENOSPC);
     };
@@ -222,7 +222,7 @@ TEST(PngWriter, FullDiskIsAnError) {
     }
     // The header fits, but the rows do not.
     const Folder folder;
-    const OpenFile file(folder / "a.png");
+    const TestFile file(folder / "a.png");
     const std::unique_ptr<RowWriter> writer = create_png(file, picture_spec(spec), 2);
     ASSERT_TRUE(writer);
     ASSERT_GE(::dup2(full, file), 0);
@@ -236,7 +236,7 @@ TEST(PngWriter, FullDiskIsAnError) {
 
 TEST(PngWriter, MissingRowsAreAnError) {
     const Folder folder;
-    const OpenFile file(folder / "a.png");
+    const TestFile file(folder / "a.png");
     const std::unique_ptr<RowWriter> writer =
         create_png(file, picture_spec(straight_spec(5, 3, 3, TypeDesc::UINT8)), 1);
     ASSERT_TRUE(writer);

@@ -92,13 +92,13 @@ void give_rows(RowWriter& writer, const OIIO::TypeDesc& type, const std::vector<
 }
 
 /// A descriptor, closed at the end.
-class OpenFile {
+class TestFile {
   public:
-    explicit OpenFile(const std::string& path, int flags = O_WRONLY | O_CREAT | O_TRUNC)
+    explicit TestFile(const std::string& path, int flags = O_WRONLY | O_CREAT | O_TRUNC)
         : file_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
-    ~OpenFile() { ::close(file_); }
-    OpenFile(const OpenFile&) = delete;
-    OpenFile& operator=(const OpenFile&) = delete;
+    ~TestFile() { ::close(file_); }
+    TestFile(const TestFile&) = delete;
+    TestFile& operator=(const TestFile&) = delete;
     operator int() const { return file_; }  // NOLINT(google-explicit-constructor)
 
   private:

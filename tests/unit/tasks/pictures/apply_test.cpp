@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tasks/pictures/read_picture.h"
 #include "picture/row_fitter.h"
+#include "tasks/pictures/read_picture.h"
 #include "tonewright/registry.h"
 #include "unit/errors.h"
 #include "unit/image/picture_files.h"

@@ -104,7 +104,8 @@ def test_pictures(c):
     c.report.check("info opens the picture", once > 0, f"{once} times")
     for text in ("apply scene.hdr out.png", "apply scene.hdr out.png --verbose", "apply scene.hdr out.exr --operator local_laplacian",
                  "compare scene.hdr hable -o out.png"):
-        c.check(text, {"scene.hdr": once})
+        # Without OpenImageIO, `apply` looks first whether it is an OpenEXR file.
+        c.check(text, {"scene.hdr": once + text.startswith("apply")})
     for text in ("apply scene.hdr out.png --operator drago", "apply scene.hdr out.png --auto-exposure mean --verbose",
                  "meter scene.hdr"):
         c.check(text, {"scene.hdr": 2 * once})
@@ -137,7 +138,9 @@ def test_libraries(c):
         found = [name for name in counts if name.startswith("libOpenImageIO")]
         c.report.check(f"small.exr to {out}: exit code", done.returncode == 0, done.stderr.decode(errors="replace"))
         c.report.check(f"small.exr to {out}: {'needs' if needs else 'does without'} OpenImageIO", bool(found) == needs, found)
-        c.report.check(f"small.exr to {out}: opens it once", counts.get("small.exr") == 1 or needs, counts.get("small.exr"))
+        # Its pixels, and its color profile.
+        c.report.check(f"small.exr to {out}: opens it twice at most", needs or 1 <= counts.get("small.exr", 0) <= 2,
+                       counts.get("small.exr"))
     if is_sanitized(c.command):
         return
     done = subprocess.run([sys.executable, "-c", MEMORY, c.command, "apply", "small.exr", "out.png", "-q"], cwd=c.folder,

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <type_traits>
+#include <vector>
 
 #include "engine/probe_block.h"
 #include "expr/scalar_ops.h"
@@ -305,11 +307,17 @@ class Assembler {
             return SampledGrid{source.edge(), {}};
         });
         Samples& nodes = grids_[found].nodes;
-        if (!(is_wide ? nodes.wide.empty() : nodes.narrow.empty())) return found;
-        for (std::size_t i = 0; i < source.nodes().size(); ++i) {
-            add(nodes, source.nodes()[i], is_wide);
-            if (i % 3 == 2) add(nodes, 0, is_wide);
-        }
+        const auto pad = [&](auto& padded) {
+            if (!padded.empty()) return;
+            using T = typename std::remove_reference_t<decltype(padded)>::value_type;
+            const std::vector<double>& numbers = source.nodes();
+            padded.resize(numbers.size() / 3 * 4);
+            for (std::size_t i = 0; i < numbers.size() / 3; ++i) {
+                for (std::size_t c = 0; c < 3; ++c)
+                    padded[4 * i + c] = static_cast<T>(numbers[3 * i + c]);
+            }
+        };
+        is_wide ? pad(nodes.wide) : pad(nodes.narrow);
         return found;
     }
 

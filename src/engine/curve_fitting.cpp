@@ -104,7 +104,13 @@ class CurveFitter {
         for (std::size_t i = 0; i < code_.size(); ++i) {
             const TapeInstruction& step = code_[i];
             const auto of = [&](std::uint32_t v) { return v < i ? interval_[v] : Interval{}; };
-            interval_.push_back(interval_of(step, of(step.a), of(step.b), of(step.c)));
+            // A grid has many nodes, and one interval for all of its channels.
+            const auto same_grid = std::find_if(
+                code_.begin(), code_.begin() + static_cast<std::ptrdiff_t>(i),
+                [&](const TapeInstruction& other) { return step.grid && other.grid == step.grid; });
+            const auto first = static_cast<std::size_t>(same_grid - code_.begin());
+            interval_.push_back(first < i ? interval_[first]
+                                          : interval_of(step, of(step.a), of(step.b), of(step.c)));
             dominator_.push_back(is_unlimited_exposure(i) ? kNone : dominator_of(i));
         }
         tried_.resize(code_.size());
@@ -304,9 +310,11 @@ class CurveFitter {
                                                                          std::uint32_t i) const {
         constexpr std::size_t n = CurveTolerance::kExponents;
         std::array<double, n> largest{};
-        for (std::size_t p = 0; p < sensitivity_.value.size(); ++p) {
-            double& here = largest[CurveTolerance::exponent_of(sensitivity_.value[p][root])];
-            here = std::max(here, sensitivity_.sensitivity[p][i]);
+        const std::vector<double>& x = sensitivity_.value[root];
+        const std::vector<double>& of_value = sensitivity_.sensitivity[i];
+        for (std::size_t p = 0; p < x.size(); ++p) {
+            double& here = largest[CurveTolerance::exponent_of(x[p])];
+            here = std::max(here, of_value[p]);
         }
         // Neighboring exponents count, too. If a neighbor has no probe color, the nearest exponent
         // with one counts.
@@ -316,11 +324,15 @@ class CurveFitter {
         for (std::size_t e = n - 1; e-- > 0;)
             above[e] = largest[e + 1] > 0 ? largest[e + 1] : above[e + 1];
         std::array<float, n> floor{};
+        double last = 0;  // most exponents have the sensitivity of the one before
         for (std::size_t e = 0; e < n; ++e) {
             const double sensitivity = std::max({largest[e], below[e], above[e], 1e-3});
             // Rounded to powers of 8, so that channels that are treated alike share a curve.
-            floor[e] = static_cast<float>(
-                std::exp2(std::floor(std::log2(kOutputFloor / sensitivity) / 3) * 3));
+            floor[e] = sensitivity == last
+                           ? floor[e - 1]
+                           : static_cast<float>(std::exp2(
+                                 std::floor(std::log2(kOutputFloor / sensitivity) / 3) * 3));
+            last = sensitivity;
         }
         return floor;
     }
@@ -392,26 +404,29 @@ class CurveFitter {
     void find_kinks_between(std::span<const double> places, std::uint32_t root,
                             const std::vector<std::uint32_t>& steps, std::vector<double>& kinks) {
         run_block(steps, root, places);
-        // The side that each branch takes at each place.
-        std::vector<std::vector<bool>> sides(places.size());
+        // True where a branch takes another side than at the place before.
+        std::array<bool, kBlock> changes{};
         for (const std::uint32_t i : steps) {
             const TapeInstruction& step = code_[i];
-            for (std::size_t k = 0; k < places.size(); ++k) {
-                const double a = value_[step.a][k];
-                const double b = value_[step.b][k];
-                if (step.op == ExprOp::minimum || step.op == ExprOp::maximum ||
-                    step.op == ExprOp::less) {
-                    sides[k].push_back(a < b);
-                } else if (step.op == ExprOp::less_equal) {
-                    sides[k].push_back(a <= b);
-                } else if (step.op == ExprOp::absolute) {
-                    sides[k].push_back(a < 0);
+            const auto compare = [&](const auto& takes_first) {
+                for (std::size_t k = 1; k < places.size(); ++k) {
+                    changes[k] =
+                        changes[k] || takes_first(value_[step.a][k], value_[step.b][k]) !=
+                                          takes_first(value_[step.a][k - 1], value_[step.b][k - 1]);
                 }
+            };
+            if (step.op == ExprOp::minimum || step.op == ExprOp::maximum ||
+                step.op == ExprOp::less) {
+                compare([](double a, double b) { return a < b; });
+            } else if (step.op == ExprOp::less_equal) {
+                compare([](double a, double b) { return a <= b; });
+            } else if (step.op == ExprOp::absolute) {
+                compare([](double a, double /*b*/) { return a < 0; });
             }
         }
         constexpr std::size_t kParts = 16;
         for (std::size_t k = 1; k < places.size(); ++k) {
-            if (sides[k] == sides[k - 1]) continue;
+            if (!changes[k]) continue;
             const double lo = places[k - 1];
             const double hi = places[k];
             // No two floats are closer together, and curves read floats.

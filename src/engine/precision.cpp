@@ -202,23 +202,26 @@ class PrecisionChooser {
         for (std::size_t p = 0; p < probes.size(); p += 7)
             every_7th.push_back(probes[p]);
         visit(every_7th);
-        visit_settings(every_7th);
+        std::vector<Outcomes> of_settings(settings_.size());
+        visit_settings(every_7th, of_settings);
         if (!too_coarse_.empty()) return {in_double_, too_coarse_};
         // A copy (min, select, ...) of a float is exact, but a copy of a double is not. So a choice
         // can change the errors that an earlier choice relied on, and there are several passes.
         std::vector<Vector3> near_branches;
+        Outcomes of_probes, of_near_branches;
         for (int pass = 0; pass < 4; ++pass) {
             const std::vector<bool> before = in_double_;
             std::vector<Probe> visited;
-            visit(probes, [&](std::size_t p, std::size_t lane, double worst) {
+            const auto each = [&](std::size_t p, std::size_t lane, double worst) {
                 visited.push_back({probes[p], worst});
                 if (pass == 0) collect_sides(probes[p], lane);
-            });
+            };
+            visit(probes, of_probes, each);
             climb(visited);
             if (!too_coarse_.empty()) break;
             if (pass == 0) near_branches = approach_branches();
-            visit(near_branches);
-            visit_settings(every_7th);
+            visit(near_branches, of_near_branches);
+            visit_settings(every_7th, of_settings);
             if (in_double_ == before) break;
         }
         return {in_double_, too_coarse_};
@@ -250,6 +253,14 @@ class PrecisionChooser {
         std::array<std::vector<Vector3>, 2> sides;
     };
     static constexpr std::size_t kPairs = 4;
+    /// Results of visit_lane() for a block of colors that changed nothing. They hold as long as
+    /// changes_ has the same value.
+    struct Outcome {
+        std::size_t changes = ~std::size_t{0};
+        std::array<double, kLanes> worst{};
+    };
+    /// By block.
+    using Outcomes = std::vector<Outcome>;
 
     /// The values in a sum of constant multiples that may cancel; empty for any other value. It may
     /// cancel if a constant is negative, or if a value is an input, because inputs may be negative:
@@ -370,24 +381,38 @@ class PrecisionChooser {
     /// Visits one color after the other.
     /// @param each  called after each color with its number, its lane and the result of
     ///              visit_lane()
+    /// @param known  outcomes of earlier visits of the same colors. A block is not computed again
+    ///               if nothing has changed since.
     template <class F>
-    void visit(const std::vector<Vector3>& colors, const F& each) {
+    void visit(const std::vector<Vector3>& colors, Outcomes& known, const F& each) {
+        known.resize((colors.size() + kLanes - 1) / kLanes);
         for (std::size_t p = 0; p < colors.size(); p += kLanes) {
-            look_at(&colors[p], std::min(kLanes, colors.size() - p));
-            for (std::size_t lane = 0; lane < block_.size(); ++lane) {
-                const double worst = visit_lane(lane);
-                each(p + lane, lane, worst);
+            const std::size_t n = std::min(kLanes, colors.size() - p);
+            Outcome& outcome = known[p / kLanes];
+            const bool is_known = outcome.changes == changes_;
+            if (!is_known) {
+                outcome.changes = changes_;
+                look_at(&colors[p], n);
             }
+            for (std::size_t lane = 0; lane < n; ++lane) {
+                if (!is_known) outcome.worst[lane] = visit_lane(lane);
+                each(p + lane, lane, outcome.worst[lane]);
+            }
+            if (outcome.changes != changes_) outcome = {};
         }
     }
+    void visit(const std::vector<Vector3>& colors, Outcomes& known) {
+        visit(colors, known, [](std::size_t, std::size_t, double) {});
+    }
     void visit(const std::vector<Vector3>& colors) {
-        visit(colors, [](std::size_t, std::size_t, double) {});
+        Outcomes unknown;
+        visit(colors, unknown);
     }
 
-    void visit_settings(const std::vector<Vector3>& colors) {
-        for (const std::vector<double>& setting : settings_) {
-            block_.set_uniforms(setting);
-            visit(colors);
+    void visit_settings(const std::vector<Vector3>& colors, std::vector<Outcomes>& known) {
+        for (std::size_t i = 0; i < settings_.size(); ++i) {
+            block_.set_uniforms(settings_[i]);
+            visit(colors, known[i]);
         }
         if (!settings_.empty()) block_.set_uniforms(&TapeInstruction::value);
     }
@@ -419,7 +444,8 @@ class PrecisionChooser {
                             static_cast<float>(std::clamp(x, -kHalfMax, kHalfMax)));
                     }
                 }
-                visit(colors, [&](std::size_t, std::size_t lane, double worst) {
+                Outcomes unknown;
+                visit(colors, unknown, [&](std::size_t, std::size_t lane, double worst) {
                     Probe& probe = probes[first + lane];
                     if (worst > probe.worst) probe = {colors[lane], worst};
                 });
@@ -669,20 +695,19 @@ Sensitivity measure_sensitivity(const std::vector<TapeInstruction>& code,
     const std::vector<Vector3> all = probe_colors();
     for (std::size_t p = 0; p < all.size(); p += kStride)
         probes.push_back(all[p]);
-    Sensitivity result;
+    const std::vector<double> of_colors(probes.size() * (settings.size() + 1));
+    Sensitivity result = {std::vector(code.size(), of_colors), std::vector(code.size(), of_colors)};
     ProbeBlock block(code, outputs, true);
     for (std::size_t setting = 0; setting <= settings.size(); ++setting) {
         if (setting > 0) block.set_uniforms(settings[setting - 1]);
         for (std::size_t p = 0; p < probes.size(); p += ProbeBlock::kLanes) {
             block.evaluate(&probes[p], std::min(ProbeBlock::kLanes, probes.size() - p));
             block.differentiate();
-            const std::size_t first = result.value.size();
-            result.value.resize(first + block.size(), std::vector<double>(code.size()));
-            result.sensitivity.resize(first + block.size(), std::vector<double>(code.size()));
+            const std::size_t first = setting * probes.size() + p;
             for (std::size_t i = 0; i < code.size(); ++i) {
                 for (std::size_t lane = 0; lane < block.size(); ++lane) {
-                    result.value[first + lane][i] = block.value(i, lane);
-                    double& largest = result.sensitivity[first + lane][i];
+                    result.value[i][first + lane] = block.value(i, lane);
+                    double& largest = result.sensitivity[i][first + lane];
                     for (std::size_t o = 0; o < 3; ++o) {
                         largest = std::max(largest, block.has_pole(o, i, lane)
                                                         ? kPole

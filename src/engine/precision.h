@@ -35,8 +35,8 @@ struct Precision {
                                          const std::vector<std::vector<double>>& settings = {});
 
 /// Each value, and its sensitivity: the largest derivative of an output by the value, relative to
-/// outputs above 1; 1e12 if it is infinite. Indices: [probe color][value], for each setting of the
-/// uniforms.
+/// outputs above 1; 1e12 if it is infinite. Indices: [value][probe color]. The probe colors repeat
+/// for each setting of the uniforms.
 struct Sensitivity {
     std::vector<std::vector<double>> value;
     std::vector<std::vector<double>> sensitivity;

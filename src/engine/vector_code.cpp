@@ -61,10 +61,19 @@ class Division {
         std::vector<double> cost(n + 1, kInfinity);
         std::vector<std::size_t> begin(n + 1);
         cost[0] = 0;
+        // Starts of parts that a later start may not replace: an earlier start makes a longer part,
+        // so it counts only while it costs less.
+        std::vector<double> cost_of_start(n);
+        std::vector<std::size_t> starts;
         for (std::size_t end = 1; end <= n; ++end) {
-            for (std::size_t i = end - std::min(end, kLongestPart); i < end; ++i) {
+            cost_of_start[end - 1] = cost[end - 1] + 1 + alive[end - 1];
+            while (!starts.empty() && cost_of_start[starts.back()] >= cost_of_start[end - 1])
+                starts.pop_back();
+            starts.push_back(end - 1);
+            for (const std::size_t i : starts) {
+                if (end - i > kLongestPart) continue;
                 const double length = static_cast<double>(end - i) / kLengthOfOneVector;
-                const double here = cost[i] + 1 + alive[i] + length * length;
+                const double here = cost_of_start[i] + length * length;
                 if (here >= cost[end]) continue;
                 cost[end] = here;
                 begin[end] = i;

@@ -22,8 +22,10 @@ FirstOrderError first_order_error(const std::array<Expr, 3>& outputs,
     const std::vector<TapeInstruction>& code = tape.code();
     const Sensitivity probes = measure_sensitivity(code, tape.outputs());
     FirstOrderError worst;
-    for (std::size_t p = 0; p < probes.value.size(); ++p) {
-        const std::vector<double>& value = probes.value[p];
+    std::vector<double> value(code.size());
+    for (std::size_t p = 0; p < probes.value[0].size(); ++p) {
+        for (std::size_t i = 0; i < code.size(); ++i)
+            value[i] = probes.value[i][p];
         FirstOrderError sum;
         bool has_pole = false;
         for (std::size_t i = 0; i < code.size(); ++i) {
@@ -40,15 +42,15 @@ FirstOrderError first_order_error(const std::array<Expr, 3>& outputs,
             for (int k = 0; is_place && k < operand_count(code[i].op); ++k) {
                 const std::uint32_t operand = operands[static_cast<std::size_t>(k)];
                 const double of_place =
-                    std::fabs(value[operand]) * kHalfUlp * probes.sensitivity[p][operand];
+                    std::fabs(value[operand]) * kHalfUlp * probes.sensitivity[operand][p];
                 sum.rounded_once += of_place;
                 sum.vulkan += of_place;
             }
-            has_pole = has_pole || probes.sensitivity[p][i] >= kPole;
-            sum.rounded_once += error.once * probes.sensitivity[p][i];
-            sum.vulkan += error.vulkan * probes.sensitivity[p][i];
+            has_pole = has_pole || probes.sensitivity[i][p] >= kPole;
+            sum.rounded_once += error.once * probes.sensitivity[i][p];
+            sum.vulkan += error.vulkan * probes.sensitivity[i][p];
             const auto of_node = of_nodes.find(code[i].grid);
-            if (of_node != of_nodes.end()) sum.vulkan += of_node->second * probes.sensitivity[p][i];
+            if (of_node != of_nodes.end()) sum.vulkan += of_node->second * probes.sensitivity[i][p];
         }
         // At a pole, such as a root of 0, first order gives no estimate.
         if (has_pole) continue;

@@ -21,17 +21,17 @@ TEST(Sensitivity, IsTheDerivativeAtColorsOfAllMagnitudes) {
     std::array<double, 3> least = {1, 1, 1};
     std::array<double, 3> most{};
     std::array<bool, 3> has_negative{};
-    for (std::size_t probe = 0; probe < measured.value.size(); ++probe) {
+    for (std::size_t probe = 0; probe < measured.value[0].size(); ++probe) {
         for (std::size_t i = 0; i < tape.code().size(); ++i) {
             if (tape.code()[i].op != ExprOp::input) continue;
-            const double x = measured.value[probe][i];
+            const double x = measured.value[i][probe];
             const double size = std::fabs(x);
             // Relative to outputs above 1.
             const std::array<double, 3> expected = {2 * size / std::max(1.0, x * x),
                                                     3 / std::max(1.0, 3 * size),
                                                     0.25 / std::max(1.0, size / 4)};
             const auto c = static_cast<std::size_t>(tape.code()[i].input);
-            ASSERT_NEAR(measured.sensitivity[probe][i], expected[c], 1e-12 * expected[c])
+            ASSERT_NEAR(measured.sensitivity[i][probe], expected[c], 1e-12 * expected[c])
                 << "channel " << c << " at " << x;
             if (size > 0) least[c] = std::min(least[c], size);
             most[c] = std::max(most[c], size);

@@ -73,11 +73,12 @@ std::string ktx2_file(const std::vector<float>& rgba, const std::array<int, 3>& 
     const std::size_t begin = (kKeys + keys.size() + kAlignment - 1) / kAlignment * kAlignment;
     std::string file("\xABKTX 20\xBB\r\n\x1A\n", 12);
     const std::uint32_t format = is_half ? 97 : 109;  // VK_FORMAT_R16G16B16A16_SFLOAT, R32...
+    const auto depth = size[2] == 1 ? 0U : static_cast<std::uint32_t>(size[2]);
     const auto number = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
     for (const std::uint32_t value :
          {format, is_half ? 2U : 4U, static_cast<std::uint32_t>(size[0]),
-          static_cast<std::uint32_t>(size[1]), static_cast<std::uint32_t>(size[2]), 0U, 1U, 1U, 0U,
-          kDescriptor, kDescriptorSize, kKeys, number(keys.size())})
+          static_cast<std::uint32_t>(size[1]), depth, 0U, 1U, 1U, 0U, kDescriptor, kDescriptorSize,
+          kKeys, number(keys.size())})
         append(file, value, 4);
     append(file, 0, 16);  // no global data of a supercompression
     for (const std::size_t value : {begin, texels.size(), texels.size()})

@@ -11,7 +11,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 enum class Ktx2Texel : unsigned char { half, single };
 
-/// A file of KTX 2.0 (Khronos): a volume of RGBA floats, one level, without supercompression.
+/// A file of KTX 2.0 (Khronos): a volume of RGBA floats, one level, without supercompression. A
+/// depth of 1 gives a 2D texture.
 /// @param rgba   x running fastest
 /// @param notes  text of the key `Tonewright`, lines of it; may be empty
 [[nodiscard]] std::string ktx2_file(const std::vector<float>& rgba, const std::array<int, 3>& size,

@@ -172,7 +172,8 @@ void add_shader(CommandLine& program) {
                 {.suggest = suggest_uniforms, .takes_one_each = true, .separator = ','});
     command.add(
         "--tables", "KIND", &options->tables,
-        "tables and 3D LUTs as `texture` or `array`, or 3D LUTs computed by their `formula`",
+        "tables and 3D LUTs as `texture` (speed not measured) or `array`, or 3D LUTs computed by "
+        "`formula`",
         {.choices = {"texture", "array", "formula"}});
     command.add("--curves", "KIND", &options->curves,
                 "curves of one number as `formula`, or `fitted` polynomials where these are faster",

@@ -277,7 +277,8 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
 
 std::string FunctionBody::table_value(const Expr& e) {
     const TableText& table = tables_.at(e.table().get());
-    const std::string argument = "(" + operand(e.operand(0), kAny) + ")";
+    const std::string argument = "(" + operand(e.operand(0), kAny) +
+                                 (table.texture.empty() ? "" : ", ") + table.texture + ")";
     if (table.cell_function.empty()) return table.function + argument;
     std::string& cell = cells_[table.cell_function + argument];
     if (cell.empty()) {

@@ -18,7 +18,7 @@ struct TableText {
     /// For a table of cells: the function that finds the cell of a number. Tables with the same
     /// positions share it, and `function` is a pattern with {cell}.
     std::string cell_function = {};
-    /// The texture that the function takes after the color; empty: none.
+    /// The texture that the function takes after the number or the color; empty: none.
     std::string texture = {};
 };
 

@@ -8,6 +8,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+struct TextureForm;
+
 /// Facts about a language for the printer. Patterns use fmt with named fields.
 struct LanguageFacts {
     ShaderLanguage language;
@@ -32,9 +34,12 @@ struct LanguageFacts {
     const char* array;       // {name}, {count}, {values}
     bool has_textures;
     bool prefers_formula;  // to textures of 3D LUTs
-    bool is_for_grids;     // textures hold nodes of 3D LUTs, but no 1D tables
-    bool holds_halves;     // as texels
-    const char* texel;     // in words
+    bool is_for_grids;     // textures hold nodes of 3D LUTs; 1D tables have `tables`
+    bool has_one_texture;  // at most
+    /// The texture of all 1D tables in a file for an application; null: there is none.
+    const TextureForm* tables;
+    bool holds_halves;  // as texels
+    const char* texel;  // in words
     /// Declaration of a 3D texture with {name} and {binding}.
     const char* texture;
     /// Type and name of a texture as an argument; empty: functions read it without.

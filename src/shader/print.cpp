@@ -9,11 +9,13 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "base/format_number.h"
 #include "expr/nodes.h"
 #include "shader/body.h"
 #include "shader/grid_form.h"
+#include "shader/texture_form.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -90,27 +92,30 @@ class ProgramPrinter {
                 result.push_back(uniform);
         }
         for (const Expr& e : nodes_of(exprs)) {
-            if (e.op() != ExprOp::grid) continue;
-            const std::string& texture = table_texts_.at(e.grid().get()).texture;
+            const void* const what = table_of(e);
+            if (!what) continue;
+            const std::string& texture = table_texts_.at(what).texture;
             if (!texture.empty() &&
                 std::find(result.begin(), result.end(), texture) == result.end())
                 result.push_back(texture);
         }
         return result;
     }
-    [[nodiscard]] bool is_texture_argument(const std::string& name) const {
-        return std::any_of(textures_.begin(), textures_.end(),
-                           [&](const ShaderTexture& texture) { return texture.name == name; });
+    /// Type and name of an argument after the color.
+    [[nodiscard]] std::string declared_argument(const std::string& name) const {
+        const auto texture = std::find_if(textures_.begin(), textures_.end(),
+                                          [&](const ShaderTexture& t) { return t.name == name; });
+        if (texture == textures_.end()) return declared(language_.number, name);
+        return fmt::format(
+            fmt::runtime(language_.tables && holds_tables(*texture) ? language_.tables->parameter
+                                                                    : language_.texture_parameter),
+            fmt::arg("name", name));
     }
     [[nodiscard]] std::vector<std::string> parameters(
         const char* type, const std::string& name, const std::vector<std::string>& uniforms) const {
         std::vector<std::string> result = {declared(type, name)};
-        for (const std::string& uniform : uniforms) {
-            result.push_back(is_texture_argument(uniform)
-                                 ? fmt::format(fmt::runtime(language_.texture_parameter),
-                                               fmt::arg("name", uniform))
-                                 : declared(language_.number, uniform));
-        }
+        for (const std::string& uniform : uniforms)
+            result.push_back(declared_argument(uniform));
         return result;
     }
     static std::string call(const std::string& name, const std::string& argument,
@@ -133,15 +138,30 @@ class ProgramPrinter {
         return read_uniforms(all);
     }
 
+    /// The table or the Grid that an expression reads; null: none.
+    static const void* table_of(const Expr& e) {
+        if (e.op() == ExprOp::lookup) return e.table().get();
+        return e.op() == ExprOp::grid ? e.grid().get() : nullptr;
+    }
+
     void print_tables() {
+        std::vector<std::pair<std::string, std::vector<Expr>>> functions;
         for (const ScalarFunction& function : program_.scalars)
-            print_tables_of(function.name, {function.f});
+            functions.push_back({function.name, {function.f}});
         for (const ColorFunction& function : program_.colors) {
             std::vector<Expr> all(function.f.begin(), function.f.end());
             for (const ColorFunction::Call& c : function.calls)
                 all.push_back(c.argument);
-            print_tables_of(function.name, all);
+            functions.emplace_back(function.name, all);
         }
+        if (language_.tables) {
+            std::vector<Expr> all;
+            for (const auto& function : functions)
+                all.insert(all.end(), function.second.begin(), function.second.end());
+            print_texture_of_tables(all);
+        }
+        for (const auto& function : functions)
+            print_tables_of(function.first, function.second);
     }
 
     /// Tables that no earlier function reads.
@@ -152,10 +172,7 @@ class ProgramPrinter {
             return helper(name + (number > 1 ? std::to_string(number) : ""));
         };
         for (const Expr& e : nodes_of(exprs)) {
-            const void* const what = e.op() == ExprOp::lookup
-                                         ? static_cast<const void*>(e.table().get())
-                                     : e.op() == ExprOp::grid ? e.grid().get()
-                                                              : nullptr;
+            const void* const what = table_of(e);
             if (!what || table_texts_.contains(what)) continue;
             if (e.op() == ExprOp::lookup) {
                 print_table(numbered(function + "_table", ++tables), *e.table());
@@ -206,8 +223,10 @@ class ProgramPrinter {
 
     /// True for a 1D table that becomes a texture. `formula` is about nodes of 3D LUTs alone.
     /// @throws Error  if neither an array nor a texture can hold that many
-    [[nodiscard]] bool is_texture(const std::string& what, std::size_t numbers) const {
-        const bool has_texture = language_.has_textures && !language_.is_for_grids;
+    [[nodiscard]] bool is_texture(const Table& table) const {
+        const std::size_t numbers = table.samples.size();
+        const bool has_texture =
+            language_.is_for_grids ? language_.tables != nullptr : language_.has_textures;
         const bool is_small = numbers <= language_.largest_array;
         const bool result = tables_ == ShaderTables::by_size || tables_ == ShaderTables::formula
                                 ? !is_small
@@ -218,7 +237,7 @@ class ProgramPrinter {
                                                  return info.language == language_.language;
                                              })
                                     ->id;
-        const std::string reads = name_ + " reads " + what;
+        const std::string reads = fmt::format("{} reads a table of {} numbers", name_, numbers);
         if (!has_texture && !is_small) {
             throw Error(
                 Problem{.value = reads,
@@ -227,7 +246,7 @@ class ProgramPrinter {
         throw Error(Problem{
             .value = reads + "; tables is " + (result ? "texture" : "array"),
             .expected = result
-                            ? "array: " + id + " has none that a function can read"
+                            ? "array: no texture of 32-bit floats is possible there"
                             : fmt::format("texture: an array in {} should hold at most {} numbers, "
                                           "not {}",
                                           id, language_.largest_array, numbers)});
@@ -235,6 +254,14 @@ class ProgramPrinter {
 
     /// Declares a texture; the caller fills in its texels.
     ShaderTexture& declare_texture(const std::string& name, const std::array<int, 3>& size) {
+        return declare_texture(name, size, language_.texel, language_.loader, language_.texture);
+    }
+    ShaderTexture& declare_texture(const std::string& name, const std::array<int, 3>& size,
+                                   const char* texel, const char* loader, const char* declaration) {
+        if (language_.has_one_texture && !textures_.empty()) {
+            throw Error(Problem{.value = name_ + " reads a 3D LUT and tables",
+                                .expected = "<<tables=formula>>: a texture is possible for one"});
+        }
         const auto filled = [&](const char* pattern) {
             return fmt::format(fmt::runtime(pattern), fmt::arg("name", name),
                                fmt::arg("binding", language_.first_binding + textures_.size()),
@@ -242,9 +269,10 @@ class ProgramPrinter {
                                fmt::arg("depth", size[2]), fmt::arg("edge", size[0]),
                                fmt::arg("pitch", 16 * size[0]));
         };
+        const bool is_flat = language_.tables && size[2] == 1;
         text_ += fmt::format("\n// {}: {} texels, RGBA, {}, no filter.\n", name,
-                             fmt::join(size, " x "), language_.texel) +
-                 filled(language_.loader) + filled(language_.texture);
+                             fmt::join(std::span(size).first(is_flat ? 2 : 3), " x "), texel) +
+                 filled(loader) + filled(declaration);
         return textures_.emplace_back(ShaderTexture{name, size, {}});
     }
 
@@ -261,22 +289,67 @@ class ProgramPrinter {
         end();
     }
 
-    /// Access to the numbers of a table: patterns with {i}, and arrays that are local to the
-    /// function.
+    /// Declares the texture of all tables that become one. Equal arrays, such as the positions of
+    /// several tables, share a place.
+    void print_texture_of_tables(const std::vector<Expr>& exprs) {
+        std::vector<const std::vector<double>*> arrays;
+        std::size_t longest = 0;
+        for (const Expr& e : nodes_of(exprs)) {
+            if (e.op() != ExprOp::lookup || !is_texture(*e.table())) continue;
+            for (const auto* numbers : {&e.table()->samples, &e.table()->positions}) {
+                if (numbers->empty() || !fetches_.try_emplace(*numbers).second) continue;
+                arrays.push_back(numbers);
+                longest = std::max(longest, numbers->size());
+            }
+        }
+        if (arrays.empty()) return;
+        // Each channel of a row holds another array.
+        constexpr std::array kChannels = {".r", ".g", ".b", ".a"};
+        const TextureForm& form = *language_.tables;
+        const auto width = std::min(longest, static_cast<std::size_t>(form.largest_width));
+        const std::size_t rows = (longest + width - 1) / width;
+        const std::size_t height =
+            rows * ((arrays.size() + kChannels.size() - 1) / kChannels.size());
+        ShaderTexture& texture = declare_texture(
+            helper("tables"), {static_cast<int>(width), static_cast<int>(height), 1},
+            "32-bit floats", form.note, form.declaration);
+        texture.rgba.resize(kChannels.size() * width * height);
+        for (std::size_t k = 0; k < arrays.size(); ++k) {
+            const std::size_t channel = k % kChannels.size();
+            const std::size_t row = k / kChannels.size() * rows;
+            for (std::size_t i = 0; i < arrays[k]->size(); ++i) {
+                texture.rgba[kChannels.size() * (row * width + i) + channel] =
+                    static_cast<float>((*arrays[k])[i]);
+            }
+            // GLSL ES 1.00 has no %.
+            const std::string x =
+                rows == 1 ? "{i}" : fmt::format("({{i}}) - {0} * (({{i}}) / {0})", width);
+            std::string y = row > 0 || rows == 1 ? std::to_string(row) : "";
+            if (rows > 1) y += fmt::format("{}({{i}}) / {}", row > 0 ? " + " : "", width);
+            fetches_[*arrays[k]] =
+                fmt::format(fmt::runtime(form.fetch), fmt::arg("name", texture.name),
+                            fmt::arg("x", x), fmt::arg("y", y), fmt::arg("width", width),
+                            fmt::arg("height", height)) +
+                kChannels.at(channel);
+        }
+    }
+
+    /// Access to the numbers of a table: patterns with {i}, arrays that are local to the function,
+    /// and the texture if it is an argument.
     struct StoredTable {
         std::string value;
         std::string position;
-        std::string local_values;
-        std::string local_positions;
+        std::string local_values = {};
+        std::string local_positions = {};
+        std::string argument = {};
     };
 
     StoredTable store(const std::string& name, const Table& table) {
         const std::string values = name + "_values";
         const std::string positions = name + "_positions";
         const std::size_t count = table.samples.size();
-        if (!is_texture(fmt::format("a table of {} numbers", count), count)) {
-            StoredTable stored{values + "[{i}]", positions + "[{i}]", array(values, table.samples),
-                               ""};
+        if (!is_texture(table)) {
+            StoredTable stored{values + "[{i}]", positions + "[{i}]", array(values, table.samples)};
             const bool is_new =
                 !table.positions.empty() && !cell_functions_.contains(table.positions);
             if (is_new) stored.local_positions = array(positions, table.positions);
@@ -285,6 +358,11 @@ class ProgramPrinter {
             stored.local_values.clear();
             stored.local_positions.clear();
             return stored;
+        }
+        if (language_.tables) {
+            return {.value = fetches_.at(table.samples),
+                    .position = table.positions.empty() ? "" : fetches_.at(table.positions),
+                    .argument = *language_.tables->parameter ? helper("tables") : ""};
         }
         const int rows = (static_cast<int>(count) + kTableWidth - 1) / kTableWidth;
         ShaderTexture& texture = declare_texture(values, {kTableWidth, rows, 1});
@@ -296,7 +374,7 @@ class ProgramPrinter {
         }
         print_texel(name + "_value", values, 0);
         if (!table.positions.empty()) print_texel(name + "_position", values, 1);
-        return {name + "_value({i})", name + "_position({i})", "", ""};
+        return {name + "_value({i})", name + "_position({i})"};
     }
 
     static std::string at(const std::string& pattern, const std::string& i) {
@@ -332,11 +410,13 @@ class ProgramPrinter {
         const bool is_step = table.interpolation == Table::Interpolation::step;
         const char* const number = language_.number;
         const auto value_at = [&](const char* i) { return at(stored.value, i); };
+        std::vector<std::string> of_x = {declared(number, "x")};
+        if (!stored.argument.empty()) of_x.push_back(declared_argument(stored.argument));
         if (is_step && !table.positions.empty()) {
             std::string& cell_function = cell_functions_[table.positions];
             if (cell_function.empty()) {
                 cell_function = name + "_cell";
-                begin(language_.integer, cell_function, {declared(number, "x")});
+                begin(language_.integer, cell_function, of_x);
                 text_ += stored.local_positions;
                 print_search(stored.position, n);
                 line("return cell;");
@@ -350,11 +430,11 @@ class ProgramPrinter {
             }
             table_texts_[&table] = {
                 stored.local_values.empty() ? value_at("{cell}") : name + "_value({cell})",
-                cell_function};
+                cell_function, stored.argument};
             return;
         }
-        table_texts_[&table] = {name};
-        begin(number, name, {declared(number, "x")});
+        table_texts_[&table] = {name, "", stored.argument};
+        begin(number, name, of_x);
         text_ += stored.local_values + stored.local_positions;
         if (n == 1) {
             line("return " + value_at("0") + ";");
@@ -676,6 +756,8 @@ class ProgramPrinter {
     ShaderTables tables_;
     std::map<const void*, TableText> table_texts_;
     std::map<std::vector<double>, std::string> cell_functions_;  // by positions
+    /// Patterns with {i} of a number in the texture of tables, by all numbers of the array.
+    std::map<std::vector<double>, std::string> fetches_;
     std::vector<ShaderTexture> textures_;
     std::string text_;
 };

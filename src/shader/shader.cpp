@@ -25,6 +25,7 @@
 #include "shader/guaranteed_bound.h"
 #include "shader/measured_errors.h"
 #include "shader/print.h"
+#include "shader/texture_form.h"
 #include "shader/wrapper.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
@@ -586,12 +587,9 @@ Shader write_shader(const ShaderRequest& given, const ShaderErrors* errors) {
     // The same functions for the application's other backend.
     std::string other;
     if (const std::optional<ShaderLanguage> second = second_language(*request.application)) {
-        LanguageFacts facts = facts_of(*second);
-        facts.texture = "";
-        facts.loader = "";
-        facts.prologue = "";
-        other =
-            print_program(program, facts, shader.function, request.uniforms, request.tables).text;
+        other = print_program(program, second_language_for(*second), shader.function,
+                              request.uniforms, request.tables)
+                    .text;
     }
     return wrap(*request.application, std::move(shader), arguments_of(request), other);
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/strings.h"
-#include "shader/grid_form.h"
+#include "shader/texture_form.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -17,9 +17,10 @@ namespace {
 /// arguments after its color, each with a comma before it, `@names` their names, `@arguments` the
 /// lines of `argument` and
 /// `@declarations` those of `declaration`. Text between `@[` and `@]` is left out if there are no
-/// arguments, and text between `@(` and `@)` if there are no textures. `@header` is replaced by the
-/// comments of the text, `@grids` and `@bindings` by the lines of the GridForm, and `@other` by the
-/// functions in the second language, `@halves` by what reads the data of web pages.
+/// arguments, and text between `@(` and `@)` if there are no textures; `@g(` and `@g)` are for
+/// those of 3D LUTs, `@t(` and `@t)` for those of tables. `@header` is replaced by the comments of
+/// the text, `@grids` and `@bindings` by the lines of the TextureForm, and `@other` by the
+/// functions in the second language, `@numbers` by what reads the data of web pages.
 struct Wrapper {
     const char* id;
     const char* before;
@@ -35,20 +36,20 @@ struct Wrapper {
 
 constexpr Wrapper kWrappers[] = {
     {"threejs",
-     "import { @(DataTexture, HalfFloatType, Material, @)ShaderChunk@(, ShaderLib@) } from "
-     "'three';\n\n"
+     "import { @(DataTexture, @)@t(FloatType, @t)@g(HalfFloatType, @g)@(Material, @)ShaderChunk@(, "
+     "ShaderLib@) } from 'three';\n\n"
      "// Call it before materials are compiled, then: renderer.toneMapping = "
      "CustomToneMapping.\n"
      "export function use_@function() {\n"
      "@("
      "    const uniforms = {};\n"
-     "    for (const [name, [edge, data]] of Object.entries(grids)) {\n"
+     "    for (const [name, [width, height, type, Numbers, data]] of Object.entries(textures)) {\n"
      "        const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));\n"
-     "        const nodes = new DataTexture(new Uint16Array(bytes.buffer), edge, edge * edge);\n"
-     "        nodes.type = HalfFloatType;\n"
-     "        nodes.clone = () => nodes; // all materials share it\n"
-     "        nodes.needsUpdate = true;\n"
-     "        uniforms[name] = { value: nodes };\n"
+     "        const texture = new DataTexture(new Numbers(bytes.buffer), width, height);\n"
+     "        texture.type = type;\n"
+     "        texture.clone = () => texture; // all materials share it\n"
+     "        texture.needsUpdate = true;\n"
+     "        uniforms[name] = { value: texture };\n"
      "    }\n"
      "    for (const shader of Object.values(ShaderLib)) Object.assign(shader.uniforms, "
      "uniforms);\n"
@@ -68,29 +69,45 @@ constexpr Wrapper kWrappers[] = {
      "    return max(shown, vec3(0.0)); // three.js encodes it with a power\n"
      "}\n"
      "`;\n"
-     "@(\n// Nodes of 3D LUTs: edge, and RGBA in half floats (base64).\n"
-     "const grids = {\n@grids};\n@)",
+     "@(\n// Width, height and RGBA (base64): nodes of 3D LUTs in half floats, tables in 32-bit "
+     "floats.\n"
+     "const textures = {\n@grids};\n@)",
      "const float @name_value = @value; // @help"
      "\n",
      "@name_value"},
     // A function of WGSL or GLSL finds a texture by the name that its node has; the first node is
     // an argument, so that three.js declares the texture.
     {"threejs-tsl",
-     "@(import { Data3DTexture, HalfFloatType } from 'three/webgpu';\n@)"
-     "import { Fn, glsl, glslFn@(, ivec3, texture3D@), wgsl, wgslFn } from 'three/tsl';\n\n"
+     "@g(import { Data3DTexture, HalfFloatType } from 'three/webgpu';\n@g)"
+     "@t(import { DataTexture, FloatType } from 'three/webgpu';\n@t)"
+     "import { Fn, glsl, glslFn@t(, ivec2@t)@g(, ivec3@g)@t(, texture@t)@g(, texture3D@g), wgsl, "
+     "wgslFn } from 'three/tsl';\n\n"
      "const functions = wgsl(`\n",
      "`);\n\n"
      "// The same for WebGPURenderer without WebGPU.\n"
      "const functionsInGlsl = glsl(`@other`);\n\n"
+     "@g("
+     "// Nodes of a 3D LUT in half floats.\n"
+     "const gridOf = (bytes, size) => {\n"
+     "    const grid = new Data3DTexture(new Uint16Array(bytes), ...size);\n"
+     "    grid.type = HalfFloatType;\n"
+     "    grid.needsUpdate = true;\n"
+     "    return texture3D(grid).load(ivec3(0));\n"
+     "};\n@g)"
+     "@t("
+     "// Tables in 32-bit floats.\n"
+     "const tablesOf = (bytes, size) => {\n"
+     "    const tables = new DataTexture(new Float32Array(bytes), ...size);\n"
+     "    tables.type = FloatType;\n"
+     "    tables.needsUpdate = true;\n"
+     "    return texture(tables).load(ivec2(0));\n"
+     "};\n@t)"
      "@("
-     "// Nodes of 3D LUTs: edge, and RGBA in half floats (base64).\n"
-     "const grids = {\n@grids};\n"
-     "const nodes = Object.entries(grids).map(([name, [edge, data]]) => {\n"
+     "// Size and RGBA (base64).\n"
+     "const textures = {\n@grids};\n"
+     "const nodes = Object.entries(textures).map(([name, [nodeOf, size, data]]) => {\n"
      "    const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));\n"
-     "    const texture = new Data3DTexture(new Uint16Array(bytes.buffer), edge, edge, edge);\n"
-     "    texture.type = HalfFloatType;\n"
-     "    texture.needsUpdate = true;\n"
-     "    return texture3D(texture).load(ivec3(0)).setName(name);\n"
+     "    return nodeOf(bytes.buffer, size).setName(name);\n"
      "});\n"
      "const bound = nodes.map((_, i) => ` + 0.0 * node_${i}.rgb`).join('');\n\n"
      "@)"
@@ -148,8 +165,9 @@ constexpr Wrapper kWrappers[] = {
      "}\n"
      "\"\"\"\n\n"
      "@("
-     "# Nodes of 3D LUTs: edge, and RGBA in half floats (base64).\n"
-     "const GRIDS := [\n@grids]\n\n"
+     "# Size and RGBA (base64): nodes of 3D LUTs in half floats; tables, of depth 1, in 32-bit "
+     "floats.\n"
+     "const TEXTURES := [\n@grids]\n\n"
      "@)"
      "var _device: RenderingDevice\n"
      "var _shader: RID\n"
@@ -180,16 +198,23 @@ constexpr Wrapper kWrappers[] = {
      "\t_pipeline = _device.compute_pipeline_create(_shader)\n"
      "@("
      "\t_sampler = _device.sampler_create(RDSamplerState.new())\n"
-     "\tfor grid: Array in GRIDS:\n"
+     "\tfor texture: Array in TEXTURES:\n"
      "\t\tvar format := RDTextureFormat.new()\n"
+     "@g("
      "\t\tformat.texture_type = RenderingDevice.TEXTURE_TYPE_3D\n"
      "\t\tformat.format = RenderingDevice.DATA_FORMAT_R16G16B16A16_SFLOAT\n"
-     "\t\tformat.width = grid[0]\n"
-     "\t\tformat.height = grid[0]\n"
-     "\t\tformat.depth = grid[0]\n"
+     "@g)"
+     "@t("
+     "\t\tif texture[2] == 1:\n"
+     "\t\t\tformat.texture_type = RenderingDevice.TEXTURE_TYPE_2D\n"
+     "\t\t\tformat.format = RenderingDevice.DATA_FORMAT_R32G32B32A32_SFLOAT\n"
+     "@t)"
+     "\t\tformat.width = texture[0]\n"
+     "\t\tformat.height = texture[1]\n"
+     "\t\tformat.depth = texture[2]\n"
      "\t\tformat.usage_bits = RenderingDevice.TEXTURE_USAGE_SAMPLING_BIT\n"
      "\t\t_textures.append(_device.texture_create(format, RDTextureView.new(), "
-     "[Marshalls.base64_to_raw(grid[1])]))\n"
+     "[Marshalls.base64_to_raw(texture[3])]))\n"
      "@)"
      "\n\n"
      "func _render_callback(_type: int, data: RenderData) -> void:\n"
@@ -342,11 +367,11 @@ constexpr Wrapper kWrappers[] = {
      "    vec3 shown = @function(color@call);\n"
      "    return max(shown, vec3(0.0)); // Babylon.js encodes it with a power\n"
      "}\n"
-     "`.trimEnd();\n@halves",
+     "`.trimEnd();\n@numbers",
      "const float @name_value = @value; // @help\n", "@name_value"},
     {"playcanvas",
-     "import { SHADERLANGUAGE_GLSL, ShaderChunks@(, ADDRESS_CLAMP_TO_EDGE, FILTER_NEAREST, "
-     "PIXELFORMAT_RGBA16F, Texture@) } from 'playcanvas';\n\n"
+     "import { SHADERLANGUAGE_GLSL, ShaderChunks@(, ADDRESS_CLAMP_TO_EDGE, FILTER_NEAREST@)@g(, "
+     "PIXELFORMAT_RGBA16F@g)@t(, PIXELFORMAT_RGBA32F@t)@(, Texture@) } from 'playcanvas';\n\n"
      "// Call it before materials are compiled, then: camera.toneMapping = TONEMAP_ACES2.\n"
      "export function use_@function(device) {\n"
      "    ShaderChunks.get(device, SHADERLANGUAGE_GLSL).set('tonemappingAces2PS', code);\n"
@@ -359,12 +384,12 @@ constexpr Wrapper kWrappers[] = {
      "    vec3 shown = @function(getExposure() * color@call);\n"
      "    return max(shown, vec3(0.0)); // PlayCanvas encodes it with a power\n"
      "}\n"
-     "`;\n@halves",
+     "`;\n@numbers",
      "uniform float tw_@name; // @help\n", "tw_@name",
      "    device.scope.resolve('tw_@name').setValue(@value);\n"},
     {"cesium",
-     "import { PostProcessStage, PostProcessStageLibrary, Tonemapper@(, PixelDatatype, Sampler, "
-     "Texture3D@) } from '@cesium/engine';\n\n"
+     "import { PostProcessStage, PostProcessStageLibrary, Tonemapper@(, PixelDatatype, "
+     "Sampler@)@t(, Texture@t)@g(, Texture3D@g) } from '@cesium/engine';\n\n"
      "// It takes the place of Tonemapper.ACES in this scene, and works with "
      "scene.highDynamicRange = true.\n"
      "export function use_@function(scene) {\n"
@@ -391,10 +416,11 @@ constexpr Wrapper kWrappers[] = {
      "    vec3 shown = @function(exposure * color.rgb@call);\n"
      "    out_FragColor = vec4(czm_inverseGamma(max(shown, vec3(0.0))), color.a);\n"
      "}\n"
-     "`;\n@halves",
+     "`;\n@numbers",
      "uniform float tw_@name; // @help\n", "tw_@name", "    uniforms.tw_@name = @value;\n"},
     {"postprocessing",
-     "import { Uniform@(, Data3DTexture, HalfFloatType@) } from 'three';\n"
+     "import { Uniform@g(, Data3DTexture, HalfFloatType@g)@t(, DataTexture, FloatType@t) } from "
+     "'three';\n"
      "import { BlendFunction, Effect } from 'postprocessing';\n\n"
      "// An effect after bloom; effects on the displayed picture, such as noise, go after it.\n"
      "export class @function_Effect extends Effect {\n"
@@ -412,7 +438,7 @@ constexpr Wrapper kWrappers[] = {
      "    vec3 shown = @function(toneMappingExposure * color.rgb@call);\n"
      "    result = vec4(max(shown, vec3(0.0)), color.a); // three.js encodes it with a power\n"
      "}\n"
-     "`;\n@halves",
+     "`;\n@numbers",
      "uniform float @name; // @help\n", "@name",
      "        uniforms.set('@name', new Uniform(@value));\n"},
     {"filament", "#pragma once\n\n#include <filament/ToneMapper.h>\n#include <math/vec3.h>\n\n",
@@ -491,6 +517,10 @@ constexpr Wrapper kWrappers[] = {
 constexpr const char* kHalves =
     "\n// Nodes of 3D LUTs: RGBA in half floats (base64).\n"
     "const halves = (text) => new Uint16Array(Uint8Array.from(atob(text), (c) => "
+    "c.charCodeAt(0)).buffer);\n";
+constexpr const char* kFloats =
+    "\n// Tables: RGBA in 32-bit floats (base64).\n"
+    "const floats = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => "
     "c.charCodeAt(0)).buffer);\n";
 
 bool needs_vertex_shader(const ShaderApplication& application, const Shader& shader) {
@@ -662,11 +692,17 @@ Shader wrap(const ShaderApplication& application, Shader shader,
     }
     std::string grids;
     std::string bindings;
-    for (const ShaderTexture& texture : shader.textures) {
-        const GridForm& form = *grid_form(application);
+    const auto& textures = shader.textures;
+    const bool has_tables = std::any_of(textures.begin(), textures.end(), holds_tables);
+    const bool has_grids = !std::all_of(textures.begin(), textures.end(), holds_tables);
+    const std::string numbers = std::string(has_grids ? kHalves : "") + (has_tables ? kFloats : "");
+    for (const ShaderTexture& texture : textures) {
+        const TextureForm& form = form_of(application, texture);
         const auto filled = [&](std::string text) {
-            text = replaced(replaced(text, "@texture", texture.name), "@edge",
-                            std::to_string(texture.size[0]));
+            text = replaced(text, "@texture", texture.name);
+            text = replaced(text, "@width", std::to_string(texture.size[0]));
+            text = replaced(text, "@height", std::to_string(texture.size[1]));
+            text = replaced(text, "@depth", std::to_string(texture.size[2]));
             return form.data ? replaced(text, "@data", form.data(texture)) : text;
         };
         grids += filled(form.lines);
@@ -686,12 +722,14 @@ Shader wrap(const ShaderApplication& application, Shader shader,
     }
     const auto filled = [&](std::string text) {
         text = only_if(!arguments.empty(), text, "@[", "@]");
-        text = only_if(!shader.textures.empty(), text, "@(", "@)");
+        text = only_if(has_grids || has_tables, text, "@(", "@)");
+        text = only_if(has_grids, text, "@g(", "@g)");
+        text = only_if(has_tables, text, "@t(", "@t)");
         text = replaced(text, "@header", header);
         text = replaced(text, "@function", shader.function);
         text = replaced(text, "@call", call);
         text = replaced(text, "@names", names);
-        text = replaced(text, "@halves", shader.textures.empty() ? "" : kHalves + bindings);
+        text = replaced(text, "@numbers", numbers + bindings);
         text = replaced(text, "@declarations", declarations);
         text = replaced(text, "@arguments", lines);
         text = replaced(text, "@bindings", bindings);

@@ -10,7 +10,8 @@
 //       of it, for its `device` and `fetch`; it may be missing.
 //   {vertex, fragment, picture, size, out, bindings}   draws one triangle: vertex and fragment are {source, entryPoint,
 //       constants}, the picture is RGBA in half floats, the output in floats. Bindings are the entries of group 0:
-//       "picture", "sampler", or a list of floats in a uniform buffer.
+//       "picture", "sampler", a list of floats in a uniform buffer, or a texture {texels, size, format}: RGBA in half floats,
+//       or in `format`.
 // Prints the adapter, then `done` after each step. Messages of the compiler and other errors end it.
 import { createRequire } from 'node:module';
 import { readFile, writeFile } from 'node:fs/promises';
@@ -122,7 +123,10 @@ async function draw({ vertex, fragment, picture, size, out, bindings }) {
         sampler: device.createSampler(),
     };
     const resourceOf = async (binding) => {
-        if (binding.texels) return textureOf(await readFile(binding.texels), binding.size, 'rgba16float', 8);
+        if (binding.texels) {
+            const { texels, size: edges, format = 'rgba16float' } = binding;
+            return textureOf(await readFile(texels), edges, format, format === 'rgba16float' ? 8 : 16);
+        }
         return known[binding] ?? { buffer: bufferOf(4 * binding.length, GPUBufferUsage.UNIFORM, Float32Array.from(binding)) };
     };
     const resources = await Promise.all(bindings.map(resourceOf));

@@ -3,8 +3,9 @@
 
 A stand-in takes the place of what each application puts around the file: a module of Bevy, an include of Unity, the
 Custom node of Unreal, the kernel of Resolve. Bevy, Unity and Unreal draw a picture on Dawn, Resolve's runs on pocl; all
-with a slider for exposure, against `tonewright eval`. Files with a 3D LUT are drawn with the texture that other readers find
-in the file beside them: ktx-parse (three.js), OpenImageIO, OpenColorIO; Nuke's kernel runs as C++.
+with a slider for exposure, against `tonewright eval`. Files with a 3D LUT, and with tables of numbers, are drawn with the
+texture that other readers find in the file beside them: ktx-parse (three.js), OpenImageIO, OpenColorIO; Nuke's kernel runs as
+C++.
 
     python3 -m pytest tests/shader/test_applications.py --tonewright build/release/bin/tonewright [--screenshots FOLDER]
 """
@@ -32,6 +33,11 @@ BOUNDS = {"hable": 2e-6, "khronos_neutral": 2e-6, "agx_threejs": 6e-5, "agx_blen
           "gt7": 3.5e-3}
 # A node in half floats is 2^-12 off, which a power of 2.4 and sRGB's curve enlarge a little.
 HALF_NODES = 1.2 * 2**-12
+# Operators with a texture: options, its size, the type of its numbers, and the bound. Tables have the 32-bit floats of the arrays
+# in the text, so the bound is that of the text. The fitted curve of uchimura has a table for each coefficient; its header says 9e-8, and
+# SwiftShader rounds as for other functions.
+TEXTURES = {"agx_blender": ([], (57, 57, 57), "<f2", HALF_NODES), "aces_20": ([], (361, 2), "<f4", BOUNDS["aces_20"]),
+            "uchimura": (["--curves", "fitted"], None, "<f4", BOUNDS["hable"])}
 
 # Bevy's module of that name: the corners of one triangle around the picture.
 BEVY = """
@@ -122,7 +128,8 @@ def unreal(text: str, function: str, folder: pathlib.Path) -> dict:
     (folder / include).write_text(text.removeprefix("#pragma once\n"))  # glslang warns of it
     material = UNREAL.replace("INCLUDE", include).replace("CODE", found(r"Code: (.*?)\n", text))
     for texture in re.findall(r"// (\w+) is another input of the node: a Texture Object", text):
-        material = material.replace("float exposure;", f"Texture3D {texture};").replace(", float exposure", "").replace(
+        kind = found(rf"(Texture\dD) {texture}\)", text)
+        material = material.replace("float exposure;", f"{kind} {texture};").replace(", float exposure", "").replace(
             ", exposure", "")
     return hlsl(material, "Vert", "Fragment", function, folder)
 
@@ -133,27 +140,32 @@ def resolve(text: str, function: str, picture: np.ndarray) -> np.ndarray:
     return OpenCl({function: f"#define SLIDER {STOPS}f\n{text}"}, {function: call}).run(function, picture)
 
 
-def ktx2(path: pathlib.Path, modules: pathlib.Path) -> np.ndarray:
-    """Texels in half floats."""
+# Readers of the files beside a text: the texels of a texture of that size and type.
+
+def ktx2(path: pathlib.Path, size: tuple, kind: str, modules: pathlib.Path) -> np.ndarray:
     script = f"""import {{ readFileSync, writeFileSync }} from 'fs';
 const {{ read }} = await import({str(modules / "three/examples/jsm/libs/ktx-parse.module.js")!r});
 const file = read(new Uint8Array(readFileSync({str(path)!r})));
-if (file.vkFormat !== 97 || file.supercompressionScheme !== 0 || file.levels.length !== 1) throw new Error('another format');
+if (file.vkFormat !== {97 if kind == "<f2" else 109} || file.supercompressionScheme !== 0 || file.levels.length !== 1) throw new Error('another format');
 writeFileSync({str(path.with_suffix(".texels"))!r}, file.levels[0].levelData);
 console.log(file.pixelWidth, file.pixelHeight, file.pixelDepth, file.keyValue.KTXwriter);"""
     said = subprocess.run(["node", "--input-type=module", "-e", script], check=True, capture_output=True, text=True).stdout.split()
-    assert said[:4] == ["57", "57", "57", "Tonewright"], said
-    return np.fromfile(path.with_suffix(".texels"), "<f2")
+    assert said[:4] == [*(str(edge) for edge in (*size, 0)[:3]), "Tonewright"], said
+    return np.fromfile(path.with_suffix(".texels"), kind)
 
 
-def exr(path: pathlib.Path, _) -> np.ndarray:
-    picture = OpenImageIO.ImageBuf(str(path))
-    assert (picture.spec().width, picture.spec().height, str(picture.spec().format)) == (57, 57 * 57, "half"), picture.geterror()
-    return picture.get_pixels(OpenImageIO.FLOAT).astype("<f2").ravel()
+def exr(path: pathlib.Path, size: tuple, kind: str, _) -> np.ndarray:
+    picture, spec = OpenImageIO.ImageBuf(str(path)), OpenImageIO.ImageBuf(str(path)).spec()
+    expected = (size[0], int(np.prod(size[1:])), "half" if kind == "<f2" else "float")
+    assert (spec.width, spec.height, str(spec.format)) == expected, picture.geterror()
+    return picture.get_pixels(OpenImageIO.FLOAT).astype(kind).ravel()
 
 
-def script(path: pathlib.Path, _) -> np.ndarray:
-    return np.frombuffer(base64.b64decode(found(r'Data = "(.*?)"', path.read_text())), "<f2")
+def script(path: pathlib.Path, size: tuple, kind: str, _) -> np.ndarray:
+    text = path.read_text()
+    made = {"<f2": "new Texture3D({}, {}, {}, TextureFormat.RGBAHalf,", "<f4": "new Texture2D({}, {}, TextureFormat.RGBAFloat,"}
+    assert made[kind].format(*size) in text, "the texture of the script"
+    return np.frombuffer(base64.b64decode(found(r'Data = "(.*?)"', text)), kind)
 
 
 def cube(path: pathlib.Path) -> np.ndarray:
@@ -186,7 +198,7 @@ def nuke_with_lut(text: str, folder: pathlib.Path, picture: np.ndarray) -> np.nd
     """The kernel as C++, whose second input is the picture beside it. Rows of Nuke begin at the bottom."""
     name = found(r"Image<eRead, eAccessRandom, eEdgeClamped> (\w+);", text)
     kernel = found(r"kernel (\w+) :", text)
-    texels = exr(folder / f"{name}.exr", None).astype("<f4")
+    texels = exr(folder / f"{name}.exr", (57, 57, 57), "<f2", None).astype("<f4")
     program = f"""{BLINK}
 #include <cstdio>
 #include <vector>
@@ -253,16 +265,21 @@ def test_files(request, report, command, scratch):
     # Without a slider: the binding after the picture and its sampler is the texture.
     for application, prepare, display, read in (("bevy", bevy, "linear", ktx2), ("unity", unity, "linear", script),
                                                 ("unreal", unreal, "srgb", exr)):
-        file, out = scratch / f"{application}_lut.txt", scratch / f"{application}_lut.out"
-        subprocess.run([command, "shader", "agx_blender", "--for", application, "--tables", "texture", "-o", str(file), "-q"], check=True)
-        (beside,) = [*scratch.glob("*nodes.ktx2"), *scratch.glob("*nodes.cs"), *scratch.glob("*nodes.exr")]
-        texels = scratch / f"{application}.texels"
-        read(beside, dawn.modules).tofile(texels)
-        beside.unlink()
-        step = prepare(file.read_text(), f"{application}_lut", scratch)
-        step["bindings"] = ["picture", "sampler", {"texels": str(texels), "size": [57, 57, 57]}]
-        steps.append(step | {"picture": str(scratch / "scene.half"), "size": SIZE, "out": str(out)})
-        drawn[application, "agx_blender, a texture"] = out, display
+        for operator, (options, known_size, kind, _) in TEXTURES.items():
+            folder = scratch / f"{application}_{operator}_texture"
+            folder.mkdir()
+            file, out, texels = folder / "file.txt", folder / "out", folder / "texels"
+            subprocess.run([command, "shader", operator, "--for", application, "--tables", "texture", "-o", str(file), "-q", *options],
+                           check=True)
+            (beside,) = folder.glob("tw_*")
+            size = tuple(map(int, found(r"// tw_\w+: ([\dx ]+) texels", file.read_text()).split(" x ")))
+            assert size == (known_size or size), size
+            read(beside, size, kind, dawn.modules).tofile(texels)
+            step = prepare(file.read_text(), f"{application}_{operator}_texture", folder)
+            texture = {"texels": str(texels), "size": size, "format": "rgba16float" if kind == "<f2" else "rgba32float"}
+            step["bindings"] = ["picture", "sampler", texture]
+            steps.append(step | {"picture": str(scratch / "scene.half"), "size": SIZE, "out": str(out)})
+            drawn[application, f"{operator}, a texture"] = out, display
     subprocess.run([command, "shader", "agx_blender", "--for", "resolve", "--tables", "texture", "-o", "lut.dctl", "-q"], check=True, cwd=scratch)
     shown = resolve_with_lut((scratch / "lut.dctl").read_text(), scratch, scene)
     np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(scratch / "lut.out")
@@ -274,7 +291,7 @@ def test_files(request, report, command, scratch):
     print(f"{dawn.run(steps)}, pocl")
     for (application, operator), (out, display) in drawn.items():
         shown = np.fromfile(out, np.float32).reshape(-1, 4)[:, :3].astype(float)
-        stops, bound = (0, HALF_NODES) if "texture" in operator else (STOPS, BOUNDS[operator])
+        stops, bound = (0, TEXTURES[operator.split(",")[0]][3]) if "texture" in operator else (STOPS, BOUNDS[operator])
         expected = reference(command, operator.split(",")[0], scene, "--display", display, "--exposure", str(stops))
         to_light = {"linear": lambda x: x, "srgb": None, "rec1886": lambda x: x**2.4}[display]
         codes = [srgb_encode(np.clip(to_light(x), 0, None)) if to_light else x for x in (shown, expected)]

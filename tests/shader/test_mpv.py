@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The hook that `tonewright shader --for mpv` writes, in mpv on a virtual screen, beside `tonewright apply`; AgX of Blender
-with its 3D LUT in the hook.
+with its 3D LUT in the hook, ACES 2.0 with its tables in a texture.
 
     python3 -m pytest tests/shader/test_mpv.py --tonewright build/release/bin/tonewright
 """
@@ -25,9 +25,10 @@ end)
 """
 
 
-@pytest.mark.parametrize("operator", [
-    "agx_threejs", "agx_blender", *(pytest.param(o, marks=pytest.mark.full) for o in ("aces_20", "aces_13", "khronos_neutral", "gt7"))])
-def test_hook(report, command, scratch, operator):
+@pytest.mark.parametrize("operator, options", [
+    ("agx_threejs", []), ("agx_blender", []), ("aces_20", ["--tables", "texture"]),
+    *(pytest.param(o, [], marks=pytest.mark.full) for o in ("aces_20", "aces_13", "khronos_neutral", "gt7"))])
+def test_hook(report, command, scratch, operator, options):
     for program, package in (("mpv", "mpv"), ("xvfb-run", "xvfb"), ("oiiotool", "openimageio-tools")):
         need_program(program, package)
 
@@ -43,7 +44,7 @@ def test_hook(report, command, scratch, operator):
     scene = OpenImageIO.ImageBuf(OpenImageIO.ImageSpec(width, height, 3, "half"))
     scene.set_pixels(OpenImageIO.ROI(), np.ascontiguousarray(patches.repeat(patch, 0).repeat(patch, 1)))
     assert scene.write(str(scratch / "scene.exr")), scene.geterror()
-    run(command, "shader", operator, "--for", "mpv", "-o", "hook.glsl", "-q")
+    run(command, "shader", operator, "--for", "mpv", "-o", "hook.glsl", "-q", *options)
     run(command, "apply", "scene.exr", "right.png", "-d", "uint16", "--operator", operator, "-q")
     run("xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", "mpv", "--no-config", "--vo=gpu", "--gpu-api=opengl", "--gpu-sw",
         "--no-audio", "--keep-open", "--pause", "--osd-level=0", f"--geometry={width}x{height}", "--no-border", "--dither=no",

@@ -22,6 +22,8 @@ HERE = pathlib.Path(__file__).parent
 WIDTH, HEIGHT = 64, 47  # a multiple of 64 has rows without padding in WebGPU
 # AgX Punchy has two 3D LUTs.
 OPERATORS = ["agx_threejs", "agx_blender", "agx_blender:look=punchy", "aces_20", "khronos_neutral", "gt7", "aces_13"]
+# The tables of aces_20 as arrays, and in a texture of 32-bit floats: the same numbers, so the bound is the same.
+FILES = [(operator, "") for operator in OPERATORS] + [("aces_20", "texture")]
 # Of a canvas: half a code of 8 bits, and what SwiftShader's rounding is off.
 HALF_A_CODE = 0.5 / 255 + 1e-4
 
@@ -61,15 +63,18 @@ def test_page(request, report, command, scratch):
     rgba = np.concatenate([rgb, np.ones((len(rgb), 1), np.float32)], axis=1)
     files = {"/three/": modules / "three", "/light": rgba.tobytes(), "/modules/": scratch, "/three_room.js": HERE / "three_room.js"}
     job = {"width": WIDTH, "height": HEIGHT, "webgl": [], "webgpu": [], "hasExamples": IS_FULL}
-    for operator in OPERATORS:
+    for operator, tables in FILES:
         name = name_of(operator)
-        run(command, "shader", operator, "--for", "threejs", "-o", name + ".js", "-q", folder=scratch)
-        run(command, "shader", operator, "--for", "threejs-tsl", "-o", name + ".tsl.js", "-q", folder=scratch)
-        job["webgl"].append({"module": f"/modules/{name}.js", "name": "use_tw_" + name, "hasRoom": operator == OPERATORS[0],
-                             "hasTables": "float[" in (scratch / f"{name}.js").read_text()})
+        file, options = name + tables, ["--tables", tables] if tables else []
+        run(command, "shader", operator, "--for", "threejs", "-o", file + ".js", "-q", *options, folder=scratch)
+        run(command, "shader", operator, "--for", "threejs-tsl", "-o", file + ".tsl.js", "-q", *options, folder=scratch)
+        has_arrays = "float[" in (scratch / f"{file}.js").read_text()
+        report.check(f"{file}: arrays of constants", has_arrays == (operator == "aces_20" and not tables))
+        job["webgl"].append({"module": f"/modules/{file}.js", "name": "use_tw_" + name, "what": file,
+                             "hasRoom": operator == OPERATORS[0], "hasArrays": has_arrays})
         # WebGPURenderer falls back to WebGL 2 where there is no WebGPU.
         for backend in "WebGPU", "WebGL":
-            job["webgpu"].append({"module": f"/modules/{name}.tsl.js", "name": "tw_" + name, "backend": backend})
+            job["webgpu"].append({"module": f"/modules/{file}.tsl.js", "name": "tw_" + name, "backend": backend})
     imports = {"three": "/three/build/three.module.js", "three/webgpu": "/three/build/three.webgpu.js",
                "three/tsl": "/three/build/three.tsl.js", "three/addons/": "/three/examples/jsm/"}
     if IS_FULL:
@@ -80,7 +85,7 @@ def test_page(request, report, command, scratch):
         files["/package/"] = package
         exports = json.loads((package / "package.json").read_text())["exports"]
         imports |= {"tonewright-shaders" + name[1:]: "/package" + entry["default"][1:] for name, entry in exports.items()}
-        job["webgl"].append({"example": "/example/0.js", "name": "npm"})
+        job["webgl"].append({"example": "/example/0.js", "what": "npm"})
         job["webgpu"].append({"module": "tonewright-shaders/tsl", "name": "agx_blender", "backend": "WebGPU"})
     files["/job.json"] = json.dumps(job).encode()
     page = (HERE / "threejs.html").read_text().replace("IMPORTMAP", json.dumps({"imports": imports}))
@@ -93,14 +98,14 @@ def test_page(request, report, command, scratch):
         return np.clip(pixels(what).reshape(HEIGHT, WIDTH, 3)[::-1].reshape(-1, 3), 0, 1)
 
     print(posted["finished"].decode())
-    operators = [*OPERATORS, "agx_blender"]
+    operators = [*(operator for operator, _ in FILES), "agx_blender"]
     for operator, gl in zip(operators, job["webgl"]):
-        what = f"{operator}, {'--for' if 'module' in gl else 'npm'}"
+        what = f"{gl['what']}, {'--for' if 'module' in gl else 'npm'}"
         light = rgb
         right, floats = reference(command, operator, light), bound_of(operator)
-        report.compare(f"{what}, WebGLRenderer, canvas", pixels(f"webgl/{gl['name']}/canvas", np.uint8), right, HALF_A_CODE + floats)
-        if not gl.get("hasTables"):
-            report.compare(f"{what}, OutputPass, floats", np.clip(pixels(f"webgl/{gl['name']}/target"), 0, 1), right, floats)
+        report.compare(f"{what}, WebGLRenderer, canvas", pixels(f"webgl/{gl['what']}/canvas", np.uint8), right, HALF_A_CODE + floats)
+        if not gl.get("hasArrays"):
+            report.compare(f"{what}, OutputPass, floats", np.clip(pixels(f"webgl/{gl['what']}/target"), 0, 1), right, floats)
     for gpu in job["webgpu"]:
         operator = next(o for o in [*OPERATORS, "agx_blender"] if name_of(o) == gpu["name"].removeprefix("tw_"))
         # Materials of WebGPURenderer show no negative light.

@@ -57,10 +57,10 @@ STUB = "export default class {}\n" + "".join(f"export const {name} = () => undef
 COMMON_MODULE = "const module = {{ exports: {{}} }}, exports = module.exports, require = () => undefined;\n{}\nexport default module.exports;\n"
 
 
-def module_text(command: str, host: str, operator: str, folder: pathlib.Path, arguments: tuple) -> str:
+def module_text(command: str, host: str, operator: str, folder: pathlib.Path, arguments: tuple, tables: str) -> str:
     path = folder / f"{operator}.js"
-    uniforms = ["--uniforms", ",".join(arguments)] if arguments else []
-    subprocess.run([command, "shader", operator, "--for", host, "-o", path, "-q", *uniforms], check=True)
+    options = (["--uniforms", ",".join(arguments)] if arguments else []) + (["--tables", tables] if tables else [])
+    subprocess.run([command, "shader", operator, "--for", host, "-o", path, "-q", *options], check=True)
     return path.read_text()
 
 
@@ -85,16 +85,19 @@ def test_page(request, report, command, scratch, host, title, display):
              "/three_room.js": HERE / "three_room.js"}
     expected = {}
 
-    def add(operator: str, what: str, light: np.ndarray, *options: str, arguments: tuple = (), **settings) -> None:
+    def add(operator: str, what: str, light: np.ndarray, *options: str, arguments: tuple = (), tables: str = "",
+            **settings) -> None:
         """Draws it, and expects what eval says of the light with the options."""
         url = f"/modules/{what}.js"
-        files[url] = module_text(command, host, operator, scratch, arguments).encode()
+        files[url] = module_text(command, host, operator, scratch, arguments, tables).encode()
         name = f"tw_{operator}_Effect" if host == "postprocessing" else f"use_tw_{operator}"
         job["modules"].append({"module": url, "name": name, "what": what} | settings)
         expected[what] = reference(command, operator, light, "--display", display, *options)
 
     for operator in OPERATORS if IS_FULL else OPERATORS[:3]:
         add(operator, operator, rgb)
+    # The same numbers as in the arrays, in a texture of 32-bit floats.
+    add("aces_20", "aces_20_in_a_texture", rgb, tables="texture")
     if host in ("babylon", "playcanvas"):
         limit = LIMIT_OF_PBR if host == "babylon" else FULL_LIGHT
         add("agx_blender", "agx_blender_in_a_pipeline", np.minimum(rgb, limit), isPipeline=True)

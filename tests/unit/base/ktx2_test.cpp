@@ -26,6 +26,8 @@ TEST(Ktx2, HeaderAndTexelsAreWhereTheSpecificationHasThem) {
     EXPECT_EQ(number_at(single, 12), 109U) << "VK_FORMAT_R32G32B32A32_SFLOAT";
     EXPECT_EQ(number_at(half, 16), 2U);
     EXPECT_EQ(number_at(half, 20), 2U);
+    EXPECT_EQ(number_at(half, 28), 0U) << "pixelDepth of a 2D texture";
+    EXPECT_EQ(number_at(ktx2_file(std::vector<float>(32), {2, 2, 2}, Ktx2Texel::half, ""), 28), 2U);
     for (const std::string& file : {half, single}) {
         const std::size_t begin = number_at(file, 80);
         EXPECT_EQ(begin % 16, 0U);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "shader/program.h"
+#include "shader/texture_form.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -63,21 +64,6 @@ TEST(GridForm, NodesAreThoseOfTheText) {
     EXPECT_TRUE(
         grids_in_text(program, facts_of(ShaderLanguage::glsl), ShaderTables::by_size, "f").empty())
         << "32-bit floats";
-}
-
-TEST(GridForm, FilesHoldTheTexelsInTheirOrder) {
-    ShaderTexture texture{"nodes", {2, 2, 2}, {}};
-    for (int i = 0; i < 8; ++i)
-        texture.rgba.insert(texture.rgba.end(), {static_cast<float>(i), 0.5F, 0.25F, 1});
-    const std::string cube = grid_form(find_shader_application("resolve"))->contents(texture);
-    EXPECT_NE(cube.find("LUT_3D_SIZE 2\n0 0.5 0.25\n1 0.5 0.25\n2 0.5 0.25\n"), std::string::npos);
-    const std::string script = grid_form(find_shader_application("unity"))->contents(texture);
-    EXPECT_NE(script.find("new Texture3D(2, 2, 2, TextureFormat.RGBAHalf"), std::string::npos);
-    // 0, 0.5, 0.25, 1 in half floats.
-    EXPECT_NE(script.find("\"AAAAOAA0ADw"), std::string::npos);
-    const std::string ktx2 = grid_form(find_shader_application("bevy"))->contents(texture);
-    EXPECT_EQ(ktx2.substr(1, 6), "KTX 20");
-    EXPECT_EQ(ktx2.substr(ktx2.size() - 64, 8), std::string("\0\0\0\x38\0\x34\0\x3c", 8));
 }
 
 }  // namespace

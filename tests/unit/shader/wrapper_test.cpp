@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "shader/grid_form.h"
+#include "shader/texture_form.h"
 #include "tonewright/error.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
@@ -62,11 +62,26 @@ TEST(Wrapper, HoldsTheFunctionAndEveryArgumentAndNoMarks) {
                     << application.id;
             }
         }
-        for (const std::string& text : {without, with}) {
+        shader.textures.front() = {"my_tables", {3, 1, 1}, std::vector<float>(12, 0.5F)};
+        std::string with_tables = without;
+        if (const TextureForm* form = table_form(application)) {
+            const Shader wrapped = wrap(application, shader, arguments, "");
+            with_tables = wrapped.text;
+            EXPECT_EQ(wrapped.files.empty(), !form->contents) << application.id;
+            // 0.5 is 0x3F000000: four floats in base64 and in hexadecimal digits.
+            if (form->data) {
+                EXPECT_TRUE(wrapped.text.find("AAAAPwAAAD8AAAA/AAAAP") != std::string::npos ||
+                            wrapped.text.find("0000003f0000003f") != std::string::npos)
+                    << application.id;
+            }
+        }
+        for (const std::string& text : {without, with, with_tables}) {
             EXPECT_NE(text.find(shader.function), std::string::npos) << application.id;
             for (const char* mark :
-                 {"@function", "@call", "@arguments", "@declarations", "@[", "@]", "@(", "@)",
-                  "@grids", "@bindings", "@other", "@header", "@name", "@value"})
+                 {"@function", "@call",   "@arguments", "@declarations", "@[",       "@]",
+                  "@(",        "@)",      "@g(",        "@g)",           "@t(",      "@t)",
+                  "@width",    "@height", "@depth",     "@texture",      "@numbers", "@grids",
+                  "@bindings", "@other",  "@header",    "@name",         "@value"})
                 EXPECT_EQ(text.find(mark), std::string::npos) << application.id << " " << mark;
         }
         EXPECT_EQ(without.find("my_dial"), std::string::npos) << application.id;

@@ -148,6 +148,10 @@ void FunctionBody::count(const Expr& e) {
     }
     for (int i = 0; i < e.operand_count(); ++i)
         count(e.operand(i));
+    // The search reads the number, too, which so becomes a variable.
+    if (e.op() != ExprOp::lookup) return;
+    const auto table = tables_.find(e.table().get());
+    if (table != tables_.end() && !table->second.cell_function.empty()) count(e.operand(0));
 }
 
 std::string FunctionBody::value(const Expr& e) {
@@ -277,15 +281,16 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
 
 std::string FunctionBody::table_value(const Expr& e) {
     const TableText& table = tables_.at(e.table().get());
-    const std::string argument = "(" + operand(e.operand(0), kAny) +
-                                 (table.texture.empty() ? "" : ", ") + table.texture + ")";
+    const std::string x = operand(e.operand(0), kAny);
+    const std::string argument =
+        "(" + x + (table.texture.empty() ? "" : ", ") + table.texture + ")";
     if (table.cell_function.empty()) return table.function + argument;
     std::string& cell = cells_[table.cell_function + argument];
     if (cell.empty()) {
         cell = unique("cell");
         add_line(language_.integer, cell, table.cell_function + argument);
     }
-    return fmt::format(fmt::runtime(table.function), fmt::arg("cell", cell));
+    return fmt::format(fmt::runtime(table.function), fmt::arg("cell", cell), fmt::arg("x", x));
 }
 
 std::string FunctionBody::grid_channel(const Expr& e) {

@@ -15,8 +15,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Functions that read a table or a Grid in the text.
 struct TableText {
     std::string function;  // of the number, or of the color
-    /// For a table of cells: the function that finds the cell of a number. Tables with the same
-    /// positions share it, and `function` is a pattern with {cell}.
+    /// For a table with positions: the function that finds the cell of a number. Tables with the
+    /// same positions share it, and `function` is a pattern with {cell} and, for straight lines
+    /// between samples, {x}.
     std::string cell_function = {};
     /// The texture that the function takes after the number or the color; empty: none.
     std::string texture = {};

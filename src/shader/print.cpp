@@ -348,10 +348,9 @@ class ProgramPrinter {
         const std::string values = name + "_values";
         const std::string positions = name + "_positions";
         const std::size_t count = table.samples.size();
+        const bool is_new = !table.positions.empty() && !searches_.contains(search_of(table));
         if (!is_texture(table)) {
             StoredTable stored{values + "[{i}]", positions + "[{i}]", array(values, table.samples)};
-            const bool is_new =
-                !table.positions.empty() && !cell_functions_.contains(table.positions);
             if (is_new) stored.local_positions = array(positions, table.positions);
             if (language_.has_local_arrays) return stored;
             text_ += "\n" + stored.local_values + stored.local_positions;
@@ -373,8 +372,18 @@ class ProgramPrinter {
                 texture.rgba[4 * i + 1] = static_cast<float>(table.positions[i]);
         }
         print_texel(name + "_value", values, 0);
-        if (!table.positions.empty()) print_texel(name + "_position", values, 1);
+        if (is_new) print_texel(name + "_position", values, 1);
         return {name + "_value({i})", name + "_position({i})"};
+    }
+
+    /// A function that finds the cell of a number, and a pattern with {i} of a position.
+    struct Search {
+        std::string function;
+        std::string position;
+    };
+    /// Tables with the same key have the same cells.
+    static std::pair<Table::Interpolation, std::vector<double>> search_of(const Table& table) {
+        return {table.interpolation, table.positions};
     }
 
     static std::string at(const std::string& pattern, const std::string& i) {
@@ -412,16 +421,20 @@ class ProgramPrinter {
         const auto value_at = [&](const char* i) { return at(stored.value, i); };
         std::vector<std::string> of_x = {declared(number, "x")};
         if (!stored.argument.empty()) of_x.push_back(declared_argument(stored.argument));
-        if (is_step && !table.positions.empty()) {
-            std::string& cell_function = cell_functions_[table.positions];
-            if (cell_function.empty()) {
-                cell_function = name + "_cell";
-                begin(language_.integer, cell_function, of_x);
-                text_ += stored.local_positions;
-                print_search(stored.position, n);
-                line("return cell;");
-                end();
-            }
+        // Local positions are in the function that reads them.
+        const bool has_search =
+            !table.positions.empty() && n > 1 && (is_step || !language_.has_local_arrays);
+        Search own = {"", stored.position};
+        Search& search = has_search ? searches_[search_of(table)] : own;
+        if (has_search && search.function.empty()) {
+            search = {name + "_cell", stored.position};
+            begin(language_.integer, search.function, of_x);
+            text_ += stored.local_positions;
+            print_search(search.position, is_step ? n : n - 1);
+            line("return cell;");
+            end();
+        }
+        if (is_step && has_search) {
             if (!stored.local_values.empty()) {
                 begin(number, name + "_value", {declared(language_.integer, "i")});
                 text_ += stored.local_values;
@@ -430,10 +443,17 @@ class ProgramPrinter {
             }
             table_texts_[&table] = {
                 stored.local_values.empty() ? value_at("{cell}") : name + "_value({cell})",
-                cell_function, stored.argument};
+                search.function, stored.argument};
             return;
         }
-        table_texts_[&table] = {name, "", stored.argument};
+        if (has_search) {
+            const std::string texture = stored.argument.empty() ? "" : ", " + stored.argument;
+            table_texts_[&table] = {name + "({x}, {cell}" + texture + ")", search.function,
+                                    stored.argument};
+            of_x.insert(of_x.begin() + 1, declared(language_.integer, "cell"));
+        } else {
+            table_texts_[&table] = {name, "", stored.argument};
+        }
         begin(number, name, of_x);
         text_ += stored.local_values + stored.local_positions;
         if (n == 1) {
@@ -449,9 +469,9 @@ class ProgramPrinter {
                                             literal(cells - 1)))));
             if (!is_step) line(let(number, "t", fmt::format("place - {}", to_number("cell"))));
         } else {
-            print_search(stored.position, n - 1);
-            line(let(number, "begin", at(stored.position, "cell")));
-            line(let(number, "width", at(stored.position, "cell + 1") + " - begin"));
+            if (!has_search) print_search(search.position, n - 1);
+            line(let(number, "begin", at(search.position, "cell")));
+            line(let(number, "width", at(search.position, "cell + 1") + " - begin"));
             line(let(number, "t", limited("(x - begin) / width", literal(0), literal(1))));
         }
         if (is_step) {
@@ -755,7 +775,7 @@ class ProgramPrinter {
     std::vector<std::string> uniforms_;
     ShaderTables tables_;
     std::map<const void*, TableText> table_texts_;
-    std::map<std::vector<double>, std::string> cell_functions_;  // by positions
+    std::map<std::pair<Table::Interpolation, std::vector<double>>, Search> searches_;
     /// Patterns with {i} of a number in the texture of tables, by all numbers of the array.
     std::map<std::vector<double>, std::string> fetches_;
     std::vector<ShaderTexture> textures_;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
+#include <string>
 
 #include "tonewright/definition.h"
 #include "tonewright/error.h"
@@ -103,6 +105,28 @@ TEST(Shader, MatricesAreRowsInEveryLanguage) {
     const std::string in_c = print_program(program, facts_of(ShaderLanguage::c), "f", {}).text;
     EXPECT_NE(in_c.find("0.5f * c.r + 0.25f * c.g + 0.25f * c.b"), std::string::npos) << in_c;
     EXPECT_NE(in_c.find("-0.125f * c.r + 0.0f * c.g + 1.0f * c.b"), std::string::npos) << in_c;
+}
+
+TEST(Shader, TablesWithEqualPositionsShareTheSearch) {
+    Expr sum = 0.0;
+    for (const double slope : {1.0, 2.0, 3.0}) {
+        const Table table{{0, slope, 3 * slope}, Table::Interpolation::linear, {0, 0.25, 1}};
+        sum = sum + lookup(std::make_shared<const Table>(table), Expr::input() * Expr::input());
+    }
+    const ShaderProgram program = make_program({curve_stage(sum)}, {});
+    const auto count_in = [&](ShaderLanguage language, const std::string& what) {
+        const std::string text = print_program(program, facts_of(language), "f", {}).text;
+        int count = 0;
+        for (std::size_t at = text.find(what); at != std::string::npos;
+             at = text.find(what, at + 1))
+            ++count;
+        return count;
+    };
+    EXPECT_EQ(count_in(ShaderLanguage::glsl, "_positions[3] ="), 1);
+    EXPECT_EQ(count_in(ShaderLanguage::glsl, " = f_curve_table_cell("), 1) << "one call for three";
+    EXPECT_EQ(count_in(ShaderLanguage::glsl, "(x2, cell)"), 3) << "x * x computed once";
+    // Its arrays are local to the function that reads them.
+    EXPECT_EQ(count_in(ShaderLanguage::osl, "_positions[3] ="), 3);
 }
 
 TEST(Shader, LiteralsReadBackAsTheSameFloat) {

@@ -4,8 +4,6 @@
 #include <memory>
 #include <utility>
 
-#include "base/input_file.h"
-#include "picture/exr_reader.h"
 #include "picture/file_reader.h"
 #include "picture/picture_description.h"
 #include "picture/result_metadata.h"
@@ -35,15 +33,15 @@ void tonemap_to_file(const RowTonemapper& tonemapper, const PictureToFile& pictu
     file.finish();
 }
 
-bool tonemap_own_file(const RowTonemapper& tonemapper, const std::string& in,
-                      const std::string& out, const WriteOptions& write, const ReadOptions& read,
+bool tonemap_own_file(const RowTonemapper& tonemapper, std::unique_ptr<RowReader> rows,
+                      const std::string& in, const std::string& out, const WriteOptions& write,
+                      const ReadOptions& read,
                       const std::function<void(const PictureSpec&)>& header, int nthreads) {
-    if (tonemapper.takes_statistics() || tonemapper.needs_whole_picture() || write.verifies ||
-        !read.resize.empty() || !why_no_file(in).empty())
+    if (!rows || tonemapper.takes_statistics() || tonemapper.needs_whole_picture() ||
+        write.verifies || !read.resize.empty())
         return false;
     const auto threads = static_cast<unsigned>(nthreads);
-    std::unique_ptr<RowReader> rows = open_exr(in, threads);
-    if (!rows) return false;
+    rows->use_threads(threads);
     FileWriter file(out, write, threads, own_writers());
     FileReader picture(in, "openexr", std::move(rows), read);
     const PictureSpec& source = picture.spec();

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "picture/file_writer.h"
 #include "picture/picture_spec.h"
+#include "picture/row_files.h"
 #include "picture/row_pass.h"
 #include "picture/row_tonemapper.h"
 #include "tonewright/picture_options.h"
@@ -30,14 +32,15 @@ TONEWRIGHT_API void tonemap_to_file(const RowTonemapper& tonemapper, const Pictu
                                     FileWriter& file);
 
 /// tonemap_file() for files that need no OpenImageIO: OpenEXR to OpenEXR, PNG or JPEG, row by row.
+/// @param rows      of open_exr() for `in`; null: not such a file
 /// @param header    receives the header of the picture, before anything is converted
 /// @param nthreads  1 or more
 /// @returns  false for a picture, a format or a conversion that needs OpenImageIO. Nothing was
 ///           written, but `read` and `write` may have got messages.
 /// @throws Error  also what only OpenImageIO can do
 [[nodiscard]] TONEWRIGHT_API bool tonemap_own_file(
-    const RowTonemapper& tonemapper, const std::string& in, const std::string& out,
-    const WriteOptions& write, const ReadOptions& read,
+    const RowTonemapper& tonemapper, std::unique_ptr<RowReader> rows, const std::string& in,
+    const std::string& out, const WriteOptions& write, const ReadOptions& read,
     const std::function<void(const PictureSpec&)>& header, int nthreads);
 
 TONEWRIGHT_NAMESPACE_END

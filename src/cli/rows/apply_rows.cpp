@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -19,6 +20,8 @@
 #include "cli/progress.h"
 #include "cli/rows/apply_request.h"
 #include "cli/rows/picture_messages.h"
+#include "picture/exr_reader.h"
+#include "picture/file_writer.h"
 #include "picture/row_tonemapper.h"
 #include "picture/tonemap_to_file.h"
 #include "tonewright/registry.h"
@@ -63,6 +66,11 @@ bool apply_rows(const ApplyOptions& given) {
         std::filesystem::equivalent(in, out, error))
         return false;
     try {
+        // Before the operator, whose file the other module would read again.
+        (void)own_writers().format_of(out);
+        const int threads = thread_count(options.picture.threads);
+        std::unique_ptr<RowReader> rows = open_exr(in, static_cast<unsigned>(threads));
+        if (!rows) return false;
         take_lut_options("apply", options.lut, options, LutOption::yes);
         const WriteOptions asked = write_options_of(options);
         WriteOptions write = asked;
@@ -78,13 +86,12 @@ bool apply_rows(const ApplyOptions& given) {
         messages.attach_to(write);
         std::optional<PictureSpec> header;
         const ResultLine result;
-        const int threads = thread_count(options.picture.threads);
         {
             const QuietStderr quiet;
             Progress progress("apply", {.terminal = quiet.before()});
             write.progress = progress.listener().progress;
             if (!tonemap_own_file(
-                    tonemapper, in, out, write, read,
+                    tonemapper, std::move(rows), in, out, write, read,
                     [&](const PictureSpec& spec) { header = spec; }, threads))
                 return false;
         }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "picture/exr_reader.h"
 #include "tonewright/tonemap.h"
 #include "unit/errors.h"
 #include "unit/image/picture_files.h"
@@ -29,7 +30,8 @@ class TonemapOwnFile : public PictureFiles {
         write.warn = read.warn =
             read.note = [&](const std::string& text) { messages.push_back(text); };
         if (is_own) {
-            EXPECT_TRUE(tonemap_own_file(RowTonemapper(options), in, out, write, read, {}, 2));
+            EXPECT_TRUE(tonemap_own_file(RowTonemapper(options), open_exr(in, 2), in, out, write,
+                                         read, {}, 2));
         } else {
             tonemap_file(Tonemapper(options), in, out, write, read, 2);
         }
@@ -58,7 +60,8 @@ TEST_F(TonemapOwnFile, OtherPicturesAreLeftToOpenImageIO) {
     const auto is_done = [&](const TonemapOptions& options, const std::string& in,
                              const std::string& out, const ReadOptions& read = {},
                              const WriteOptions& write = {}) {
-        return tonemap_own_file(RowTonemapper(options), in, out, write, read, {}, 1);
+        return tonemap_own_file(RowTonemapper(options), open_exr(in, 1), in, out, write, read, {},
+                                1);
     };
     EXPECT_FALSE(is_done(hable(), file("in.tif"), file("out.png")));
     EXPECT_FALSE(is_done(hable(), file("missing.exr"), file("out.png")));

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "picture/exr_reader.h"
@@ -51,6 +53,39 @@ TEST_F(TonemapOwnFile, BytesAndMessagesAreThoseOfAllFormats) {
                 EXPECT_TRUE(read(own) == read(all)) << extension << " " << channels;
             }
         }
+    }
+}
+
+TEST_F(TonemapOwnFile, EachRowIsReadOnce) {
+    /// Counts the rows that a reader is asked for.
+    class Counted final : public RowReader {
+      public:
+        Counted(std::unique_ptr<RowReader> rows, std::vector<int>& count)
+            : rows_(std::move(rows)), count_(count) {
+            count_.assign(static_cast<std::size_t>(rows_->spec(0).height), 0);
+        }
+        void use_threads(unsigned count) override { rows_->use_threads(count); }
+        [[nodiscard]] bool has_picture(int number) override { return rows_->has_picture(number); }
+        [[nodiscard]] const PictureSpec& spec(int picture) override { return rows_->spec(picture); }
+        void read_rows(int picture, int ybegin, int yend, std::byte* to) override {
+            for (int y = ybegin; y < yend; ++y)
+                ++count_.at(static_cast<std::size_t>(y));
+            rows_->read_rows(picture, ybegin, yend, to);
+        }
+
+      private:
+        std::unique_ptr<RowReader> rows_;
+        std::vector<int>& count_;
+    };
+    OIIO::ImageBuf picture(OIIO::ImageSpec(4000, 500, 3, OIIO::TypeDesc::HALF));
+    OIIO::ImageBufAlgo::noise(picture, "uniform", 0.0F, 1.0F, false, 7);
+    write_image_atomically(picture, file("in.exr"));
+    for (const std::string out : {"out.png", "out.exr"}) {
+        std::vector<int> count;
+        auto rows = std::make_unique<Counted>(open_exr(file("in.exr"), 2), count);
+        EXPECT_TRUE(tonemap_own_file(RowTonemapper(hable()), std::move(rows), file("in.exr"),
+                                     file(out), {}, {}, {}, 2));
+        EXPECT_EQ(count, std::vector<int>(500, 1)) << out;
     }
 }
 

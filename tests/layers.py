@@ -53,7 +53,7 @@ PUBLIC = {
 THIRD_PARTY = {
     "hwy": ["engine", "image", "picture"],
     "OpenColorIO": ["ocio", "verify"],
-    "OpenEXR": ["picture"],
+    "OpenEXR": ["picture", "image"],
     "libdeflate.h": ["picture"],
     "jpeglib.h": ["picture"],
     "png.h": ["picture"],

@@ -17,6 +17,7 @@
 #include "base/strings.h"
 #include "image/converted_picture.h"
 #include "image/heif_reader.h"
+#include "image/luminance_chroma.h"
 #include "image/picture_file.h"
 #include "image/resize.h"
 #include "image/source_picture.h"
@@ -303,6 +304,12 @@ FileReader PictureReader::open(const std::string& path, int nthreads, const Read
     const auto threads = static_cast<unsigned>(thread_count(nthreads));
     if (std::unique_ptr<RowReader> rows = open_exr(path, threads))
         return {path, "openexr", std::move(rows), options};
+    try {
+        if (std::unique_ptr<RowReader> rows = open_luminance_chroma(path))
+            return {path, "openexr", std::move(rows), options};
+    } catch (const FileError& e) {
+        cannot_read(path, e.problem());
+    }
     // ImageBuf is not used: it asks the shared cache, which may have an older file of this name,
     // and it ignores errors that a reader reports while it delivers pixels.
     auto rows = std::make_unique<InputRows>(path, options.max_pixels);

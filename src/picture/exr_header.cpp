@@ -285,6 +285,24 @@ exr_pixel_type_t pixel_type_of(const OIIO::TypeDesc& type) {
     return type == T::UINT ? EXR_PIXEL_UINT : type == T::HALF ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
 }
 
+/// True for luminance with chroma of half its resolution. "Technical Introduction to OpenEXR",
+/// Luminance/Chroma Images.
+static bool is_luminance_chroma(const exr_attr_chlist_t& channels) {
+    int found = 0;
+    for (int i = 0; i < channels.num_channels; ++i) {
+        const exr_attr_chlist_entry_t& channel = channels.entries[i];
+        const std::string name = text_of(channel.name);
+        const bool is_chroma = name == "RY" || name == "BY";
+        const int sampling = is_chroma ? 2 : 1;
+        if (!is_chroma && name != "Y" && name != "A") return false;
+        if (channel.x_sampling != sampling || channel.y_sampling != sampling ||
+            channel.pixel_type != EXR_PIXEL_HALF)
+            return false;
+        found += name == "A" ? 0 : 1;
+    }
+    return found == 3;
+}
+
 std::optional<ExrPart> read_header(exr_const_context_t file, int part, int part_count) {
     ExrPart result;
     PictureSpec& spec = result.spec;
@@ -301,10 +319,16 @@ std::optional<ExrPart> read_header(exr_const_context_t file, int part, int part_
     if ((storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED) ||
         compression_name(result.compression).empty() || !set_windows(spec, data, shown))
         return std::nullopt;
+    result.is_luminance_chroma = is_luminance_chroma(*channels);
     for (int i = 0; i < channels->num_channels; ++i) {
         const exr_attr_chlist_entry_t& channel = channels->entries[i];
-        if (channel.x_sampling != 1 || channel.y_sampling != 1) return std::nullopt;
-        result.channels.push_back({.name = text_of(channel.name), .type = channel.pixel_type});
+        std::string name = text_of(channel.name);
+        if (result.is_luminance_chroma) {
+            name = name == "Y" ? "G" : name == "RY" ? "R" : name == "BY" ? "B" : name;
+        } else if (channel.x_sampling != 1 || channel.y_sampling != 1) {
+            return std::nullopt;
+        }
+        result.channels.push_back({.name = std::move(name), .type = channel.pixel_type});
     }
     if (result.channels.empty()) return std::nullopt;
     order_channels(result.channels, spec);

@@ -28,6 +28,8 @@ struct ExrPart {
     std::vector<ExrChannel> channels;
     exr_compression_t compression = EXR_COMPRESSION_NONE;
     bool is_tiled = false;
+    /// The file has Y, RY and BY. The spec has the R, G and B that they encode.
+    bool is_luminance_chroma = false;
     int rows_of_block = 1;  // of tiles: their height
 
     /// Bytes of a pixel with the types of the file's channels.

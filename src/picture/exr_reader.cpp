@@ -273,11 +273,25 @@ std::unique_ptr<RowReader> open_exr(const std::string& path, unsigned threads) {
     std::vector<ExrPart> parts;
     for (int i = 0; i < count; ++i) {
         std::optional<ExrPart> part = read_header(file.get(), i, count);
-        if (!part || !is_read(part->compression) || !is_finished(file.get(), i, *part))
+        if (!part || part->is_luminance_chroma || !is_read(part->compression) ||
+            !is_finished(file.get(), i, *part))
             return nullptr;
         parts.push_back(*std::move(part));
     }
     return std::make_unique<ExrReader>(std::move(file), std::move(parts), threads);
+}
+
+std::optional<PictureSpec> luminance_chroma_spec(const std::string& path) {
+    exr_context_initializer_t options = exr_options();
+    options.flags = EXR_CONTEXT_FLAG_STRICT_HEADER;
+    exr_context_t opened = nullptr;
+    if (exr_start_read(&opened, path.c_str(), &options) != EXR_ERR_SUCCESS) return {};
+    const ExrFile file(opened);
+    int count = 0;
+    if (exr_get_count(file.get(), &count) != EXR_ERR_SUCCESS || count != 1) return {};
+    std::optional<ExrPart> part = read_header(file.get(), 0, count);
+    if (!part || !part->is_luminance_chroma) return {};
+    return std::move(part->spec);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "picture/row_files.h"
@@ -16,5 +17,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 ///           deep, with subsampled channels, compressed by B44(A) or DWAA/DWAB, unfinished, or
 ///           damaged at its beginning
 [[nodiscard]] std::unique_ptr<RowReader> open_exr(const std::string& path, unsigned threads);
+
+/// The header of an OpenEXR file of luminance and chroma, with channels R, G and B instead.
+/// @returns  nothing for other files
+[[nodiscard]] std::optional<PictureSpec> luminance_chroma_spec(const std::string& path);
 
 TONEWRIGHT_NAMESPACE_END

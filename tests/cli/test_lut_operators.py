@@ -14,6 +14,8 @@ import PyOpenColorIO as ocio
 import pytest
 from pictures import ALL, acescct_encode, evaluate, read_rgb, run
 
+pytestmark = pytest.mark.share(2)
+
 # Linear Rec.709 to ACEScg, by the published conversion of both to XYZ with Bradford's adaptation (SMPTE RP 177, S-2014-004).
 TO_AP1 = np.array([[0.613097402, 0.339523146, 0.047379451], [0.070193722, 0.916353879, 0.013452399],
                    [0.020615593, 0.109569773, 0.869814635]])

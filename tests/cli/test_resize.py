@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pictures import need_program, run, share_of
 
-pytestmark = pytest.mark.share(2)
+pytestmark = pytest.mark.share(4)
 
 oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO's Python module is missing (Debian: python3-openimageio)")
 

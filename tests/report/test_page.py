@@ -19,7 +19,7 @@ import pytest
 from chromium import Page
 from executed import IS_FULL, colors, pick, reference
 
-pytestmark = pytest.mark.share(2)
+pytestmark = pytest.mark.share(3)
 
 # A grid, tables, a table in steps, branches, a hue structure, a measuring operator, a local one.
 OPERATORS = ["agx_blender", "aces_20", "camera_response", "hable", "khronos_neutral", "gt7", "reinhard:luminance", "uchimura", "drago",

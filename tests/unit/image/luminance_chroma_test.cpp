@@ -19,12 +19,13 @@ namespace {
 constexpr int kWidth = 64;
 constexpr int kHeight = 48;
 
-/// Colors whose chroma changes slowly, so that half its resolution holds it; black at the left.
+/// Colors whose chroma changes slowly, so that half its resolution holds it. Black has none: the
+/// filters would ring beside it.
 std::vector<Imf::Rgba> smooth_colors() {
     std::vector<Imf::Rgba> pixels;
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
-            const float light = 4.0F * static_cast<float>(x) / kWidth;
+            const float light = 0.25F + 4.0F * static_cast<float>(x) / kWidth;
             const float warm = 0.5F + 0.3F * std::sin(static_cast<float>(y) / 10);
             pixels.emplace_back(half(light), half(light * warm), half(light * 0.4F), half(0.5F));
         }

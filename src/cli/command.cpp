@@ -39,6 +39,11 @@ void warn_of(const ResolvedOperator& op) {
     if (!text.empty() && said.insert(text).second) warn(text);
 }
 
+void tell_of_operator(const std::string& text, const ResolvedOperator& op) {
+    say_note_on_name(text);
+    warn_of(op);
+}
+
 std::string user_cache_folder() {
     namespace fs = std::filesystem;
     const auto from = [](const char* variable) -> fs::path {
@@ -92,8 +97,7 @@ Settings ViewOptions::settings() const {
 
 ResolvedOperator ViewOptions::resolved() const {
     ResolvedOperator result = resolve_operator(op, settings(), look, operator_files());
-    say_note_on_name(op);
-    warn_of(result);
+    tell_of_operator(op, result);
     return result;
 }
 
@@ -136,8 +140,7 @@ void print_opencolorio_messages() {
 ResolvedOperator resolve_for_command(const std::string& text, const Settings& settings,
                                      const std::string& look) {
     ResolvedOperator resolved = resolve_picture_operator(text, settings, look, operator_files());
-    say_note_on_name(text);
-    warn_of(resolved);
+    tell_of_operator(text, resolved);
     return resolved;
 }
 

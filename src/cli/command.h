@@ -64,7 +64,10 @@ struct ViewOptions {
 [[nodiscard]] const OperatorSet& operator_files();
 /// Prints the operator's caution, each text once.
 void warn_of(const ResolvedOperator& op);
-/// resolve_picture_operator() with these, and the operator's caution.
+/// Prints what a command says of an operator and of its name, each text once.
+/// @param text  that names it
+void tell_of_operator(const std::string& text, const ResolvedOperator& op);
+/// resolve_picture_operator() with these, and tell_of_operator().
 [[nodiscard]] ResolvedOperator resolve_for_command(const std::string& text,
                                                    const Settings& settings = {},
                                                    const std::string& look = {});

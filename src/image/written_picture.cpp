@@ -13,6 +13,7 @@
 
 #include "image/picture_file.h"
 #include "picture/format_limits.h"
+#include "picture/read_back.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -38,25 +39,21 @@ std::string without_name(const std::string& text, const std::string& name) {
 
 std::string fault_of_size(const WrittenFile& written, const ImageSpec& is) {
     const PictureSpec& requested = written.spec;
-    const auto differs = [&](const char* what, const auto& found, const auto& expected) {
-        return fmt::format("what was written reads back with {} {}; expected {}", what, found,
-                           expected);
-    };
     if (is.width != requested.width || is.height != requested.height) {
-        return differs("size", fmt::format("{} x {}", is.width, is.height),
-                       fmt::format("{} x {}", requested.width, requested.height));
+        return reads_back_with("size", fmt::format("{} x {}", is.width, is.height),
+                               fmt::format("{} x {}", requested.width, requested.height));
     }
     // The reader of GIF adds alpha, and that of FITS has only signed integers.
     const bool adds_alpha = written.format == "gif" && is.nchannels == requested.nchannels + 1;
     const bool drops_alpha = written.format == "webp" && is.nchannels == requested.nchannels - 1;
     if (is.nchannels != requested.nchannels && !adds_alpha && !drops_alpha)
-        return differs("channels", is.nchannels, requested.nchannels);
+        return reads_back_with("channels", is.nchannels, requested.nchannels);
     if (is.format != requested.format && written.format != "fits")
-        return differs("type", is.format.c_str(), name_of(requested.format));
+        return reads_back_with("type", is.format.c_str(), name_of(requested.format));
     if (format_limits(written.format).windows != FileWindows::none &&
         (is.x != requested.x || is.y != requested.y || is.full_width != requested.full_width ||
          is.full_height != requested.full_height)) {
-        return differs(
+        return reads_back_with(
             "window",
             fmt::format("{}+{}+{} of {} x {}", is.width, is.x, is.y, is.full_width, is.full_height),
             fmt::format("{}+{}+{} of {} x {}", requested.width, requested.x, requested.y,

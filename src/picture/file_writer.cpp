@@ -28,6 +28,7 @@
 #include "picture/pixel_access.h"
 #include "picture/png_chunks.h"
 #include "picture/png_writer.h"
+#include "picture/read_back.h"
 #include "picture/source_date.h"
 #include "tonewright/view.h"
 
@@ -91,21 +92,20 @@ std::string fault_of_exr(const std::string& path, const PictureSpec& spec) {
     const std::unique_ptr<RowReader> reader = open_exr(path, 1);
     if (!reader) return "what was written cannot be read back: it is no complete OpenEXR file";
     const PictureSpec& is = reader->spec(0);
-    const auto differs = [](std::string_view what, const auto& found, const auto& expected) {
-        return fmt::format("what was written reads back with {} {}; expected {}", what, found,
-                           expected);
-    };
     const auto window_text = [](const PixelWindow& of) {
         return fmt::format("{} x {} at {}, {}", of.width(), of.height(), of.xbegin, of.ybegin);
     };
     if (data_window(is) != data_window(spec))
-        return differs("window", window_text(data_window(is)), window_text(data_window(spec)));
+        return reads_back_with("window", window_text(data_window(is)),
+                               window_text(data_window(spec)));
     if (display_window(is) != display_window(spec)) {
-        return differs("display window", window_text(display_window(is)),
-                       window_text(display_window(spec)));
+        return reads_back_with("display window", window_text(display_window(is)),
+                               window_text(display_window(spec)));
     }
-    if (is.nchannels != spec.nchannels) return differs("channels", is.nchannels, spec.nchannels);
-    if (is.format != spec.format) return differs("type", name_of(is.format), name_of(spec.format));
+    if (std::string fault = fault_of_shape(is.width, is.height, is.nchannels, spec); !fault.empty())
+        return fault;
+    if (is.format != spec.format)
+        return reads_back_with("type", name_of(is.format), name_of(spec.format));
     return "";
 }
 

@@ -24,6 +24,7 @@
 #include "base/system_files.h"
 #include "picture/file_bytes.h"
 #include "picture/jpeg_metadata.h"
+#include "picture/read_back.h"
 #include "picture/row_codes.h"
 #include "tonewright/error.h"
 
@@ -354,18 +355,8 @@ std::string fault_of_jpeg(const std::string& path, const PictureSpec& spec) {
     jpeg_destroy_decompress(&jpeg);
     if (!is_read || !ends_as_jpeg(file.get()))
         return "what was written cannot be read back: it is no complete JPEG file";
-    const auto differs = [](std::string_view what, const auto& is, const auto& expected) {
-        return fmt::format("what was written reads back with {} {}; expected {}", what, is,
-                           expected);
-    };
-    if (static_cast<int>(found.width) != spec.width ||
-        static_cast<int>(found.height) != spec.height) {
-        return differs("size", fmt::format("{} x {}", found.width, found.height),
-                       fmt::format("{} x {}", spec.width, spec.height));
-    }
-    if (found.channels != spec.nchannels)
-        return differs("channels", found.channels, spec.nchannels);
-    return "";
+    return fault_of_shape(static_cast<int>(found.width), static_cast<int>(found.height),
+                          found.channels, spec);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -22,6 +22,7 @@
 #include "picture/file_bytes.h"
 #include "picture/png_header.h"
 #include "picture/png_kernels.h"
+#include "picture/read_back.h"
 #include "picture/row_codes.h"
 
 #include <fmt/format.h>
@@ -342,19 +343,12 @@ std::string fault_of_png(const std::string& path, const PictureSpec& spec) {
     png_destroy_read_struct(&png, &info, nullptr);
     if (!is_read || !ends_as_png(file.get()))
         return "what was written cannot be read back: it is no complete PNG file";
-    const auto differs = [](std::string_view what, const auto& is, const auto& expected) {
-        return fmt::format("what was written reads back with {} {}; expected {}", what, is,
-                           expected);
-    };
-    if (static_cast<int>(found.width) != spec.width ||
-        static_cast<int>(found.height) != spec.height) {
-        return differs("size", fmt::format("{} x {}", found.width, found.height),
-                       fmt::format("{} x {}", spec.width, spec.height));
-    }
-    if (found.channels != spec.nchannels)
-        return differs("channels", found.channels, spec.nchannels);
+    if (std::string fault = fault_of_shape(static_cast<int>(found.width),
+                                           static_cast<int>(found.height), found.channels, spec);
+        !fault.empty())
+        return fault;
     const int depth = static_cast<int>(8 * size_of(spec.format));
-    if (found.depth != depth) return differs("bits", found.depth, depth);
+    if (found.depth != depth) return reads_back_with("bits", found.depth, depth);
     return "";
 }
 

@@ -44,8 +44,9 @@ const std::vector<Variable>& variables() {
          "Date of pictures that have none, in seconds since 1970, for reproducible files.",
          {"apply", "compare", "sheet", "chart", "bake"}},
         {"TMPDIR", "Folder for temporary copies of LUT files (default: `/tmp`).", with_luts},
-        {"OPENIMAGEIO_THREADS",
-         "Threads, if `--threads` states none (default: all cores).",
+        {"OPENIMAGEIO_THREADS, CUE_THREADS",
+         "Threads, if `--threads` states none; the first one that is set counts (default: all "
+         "cores).",
          {"apply", "meter"}},
         {"OIIO_LIBRARY_PATH",
          "Folders with OpenImageIO's plugins for more formats, separated by colons.",

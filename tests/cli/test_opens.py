@@ -154,6 +154,22 @@ def test_libraries(c):
                    done.stderr)
 
 
+def test_two_modules(c):
+    """A picture that needs OpenImageIO after all: nothing is said twice, and both modules count threads alike."""
+    write_exr(c.folder / "up.exr", {name: np.full((16, 16), 0.18, np.float32) for name in "RGB"})
+    run("oiiotool", c.folder / "up.exr", "--attrib", "Orientation", "6", "-o", c.folder / "turned.exr")
+    run("oiiotool", c.folder / "up.exr", "-o", c.folder / "up.tif")
+    environment = {name: value for name, value in os.environ.items() if not name.endswith("_THREADS")}
+    for name in ("up.exr", "turned.exr", "up.tif"):
+        for threads in ({}, {"CUE_THREADS": "1"}, {"OPENIMAGEIO_THREADS": "3", "CUE_THREADS": "1"}):
+            done = subprocess.run([c.command, "apply", name, "out.png", "--operator", "AgX", "-v"], cwd=c.folder,
+                                  env=environment | threads, capture_output=True, text=True, check=False)
+            c.report.check(f"{name}, {threads}: the note on the name is said once", done.stderr.count("AgX is Blender's here") == 1,
+                           done.stderr)
+            wanted = {0: os.cpu_count(), 1: 1, 2: 3}[len(threads)]
+            c.report.check(f"{name}, {threads}: {wanted} threads", f" {wanted} threads" in done.stderr, done.stderr)
+
+
 def test_shots(c):
     """Every frame is that of the file at the start, also after it was replaced, half saved or deleted."""
     count = 30

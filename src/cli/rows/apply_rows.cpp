@@ -45,8 +45,9 @@ bool is_plain(const ApplyOptions& options) {
 /// The value of OpenImageIO's attribute `threads`.
 int thread_count(int wanted) {
     if (wanted == 0) {
-        if (const char* const named = std::getenv("OPENIMAGEIO_THREADS"))
-            wanted = static_cast<int>(std::strtol(named, nullptr, 10));
+        const char* named = std::getenv("OPENIMAGEIO_THREADS");
+        if (!named) named = std::getenv("CUE_THREADS");  // of OpenCue
+        if (named) wanted = static_cast<int>(std::strtol(named, nullptr, 10));
     }
     const auto all = static_cast<int>(std::thread::hardware_concurrency());
     return wanted > 0 ? wanted : std::max(all, 1);
@@ -78,7 +79,10 @@ bool apply_rows(const ApplyOptions& given) {
         TonemapOptions tonemap = tonemap_options_of(options, asked);
         std::string op = options.is_false_color ? "false_color" : options.op;
         if (op.empty()) op = std::string(kDefaultOperator);
-        tonemap.op = resolve_for_command(op, options.settings(), options.look);
+        tonemap.op =
+            resolve_picture_operator(op, options.settings(), options.look, operator_files());
+        // An error then, in the words of the other module.
+        if (message_options().is_strict && !tonemap.op.caution().empty()) return false;
         const RowTonemapper tonemapper(tonemap);
         remove_leftovers({out});
         PictureMessages messages(in, out);
@@ -95,6 +99,7 @@ bool apply_rows(const ApplyOptions& given) {
                     [&](const PictureSpec& spec) { header = spec; }, threads))
                 return false;
         }
+        tell_of_operator(op, tonemapper.options().op);
         messages.print();
         tell_default_operator(options);
         print_result({.in = in, .out = out, .source = *std::move(header), .threads = threads},

@@ -30,6 +30,16 @@ std::optional<double> address_limit() {
 
 std::atomic<bool> is_loading = false;
 
+/// Each batch of rows and each frame allocates the buffers that the one before it freed. The
+/// allocator keeps them instead of returning them to the system, which would clear their pages
+/// again: `apply` of a UHD picture in PIZ has 25,000 page faults instead of 82,000, and takes 0.82
+/// of the time.
+void keep_freed_memory() {
+    constexpr int kMostThreshold = 32 << 20;  // glibc refuses more: malloc/malloc.c, HEAP_MAX_SIZE
+    ::mallopt(M_MMAP_THRESHOLD, kMostThreshold);
+    ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
+
 /// A module stays loaded until the process ends.
 /// @param name  picture_commands or row_commands
 template <class Commands>
@@ -44,8 +54,12 @@ const Commands& load(const std::string& name) {
         throw FileError("start: cannot load the picture commands: " + reason);
     };
     const std::optional<double> limit = address_limit();
-    // Each further arena of malloc reserves 64 to 128 MB of addresses for a thread.
-    if (limit) ::mallopt(M_ARENA_MAX, 1);
+    if (limit) {
+        // Each further arena of malloc reserves 64 to 128 MB of addresses for a thread.
+        ::mallopt(M_ARENA_MAX, 1);
+    } else {
+        keep_freed_memory();
+    }
     is_loading = limit.has_value();
     void* module = ::dlopen(path.c_str(), kBinding);
     is_loading = false;

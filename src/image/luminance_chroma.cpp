@@ -5,30 +5,15 @@
 #include <OpenEXR/ImfRgbaFile.h>
 
 #include <cstddef>
-#include <exception>
-#include <new>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "base/strings.h"
+#include "picture/exr_library.h"
 #include "picture/exr_reader.h"
-#include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-/// Runs a step of OpenEXR's library.
-template <class Step>
-decltype(auto) by_openexr(const Step& step) {
-    try {
-        return step();
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
-        throw FileError(problem_of_library(e.what()));
-    }
-}
 
 class LuminanceChroma final : public RowReader {
   public:

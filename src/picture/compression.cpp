@@ -132,15 +132,19 @@ void set_compression(PictureSpec& spec, std::string_view codec, const Compressio
     // becomes half as bright. ImageMagick and libvips use the same limit.
     constexpr int kFullChromaQuality = 90;
     constexpr int kDefaultQuality = 98;  // of OpenImageIO's writer
-    int quality = spec.get_int_attribute("CompressionQuality", kDefaultQuality);
-    const std::string stated = spec.get_string_attribute("compression");
-    if (const std::size_t colon = stated.find(':'); colon != std::string::npos) {
-        quality = 0;
-        std::from_chars(&stated[colon] + 1, stated.data() + stated.size(), quality);
-    }
+    const int quality = quality_of(spec, kDefaultQuality);
     spec.attribute("jpeg:subsampling", !options.subsampling.empty()    ? options.subsampling
                                        : quality >= kFullChromaQuality ? "4:4:4"
                                                                        : "4:2:0");
+}
+
+int quality_of(const PictureSpec& spec, int otherwise) {
+    const std::string name = spec.get_string_attribute("compression");
+    const std::size_t colon = name.find(':');
+    if (colon == std::string::npos) return spec.get_int_attribute("CompressionQuality", otherwise);
+    int quality = 0;
+    std::from_chars(name.data() + colon + 1, name.data() + name.size(), quality);
+    return quality;
 }
 
 int rows_of_block(std::string_view compression) {

@@ -25,6 +25,10 @@ void check_compression(const std::string& path, std::string_view codec,
 /// @param codec  the format, or `avif`
 void set_compression(PictureSpec& spec, std::string_view codec, const CompressionOptions& options);
 
+/// The quality in the name of a compression ("dwaa:100"), else that of "CompressionQuality".
+/// @param otherwise  without either
+[[nodiscard]] int quality_of(const PictureSpec& spec, int otherwise);
+
 /// Rows of the blocks that a compression of OpenEXR makes (ImfCompressor.cpp); 0 for other names.
 [[nodiscard]] int rows_of_block(std::string_view compression);
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/strings.h"
+#include "picture/compression.h"
 #include "picture/half.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -282,6 +283,12 @@ void fit_to_exr(PictureSpec& spec) {
     const bool is_wide = spec.format.basetype == T::FLOAT || spec.format.basetype == T::DOUBLE;
     spec.format = spec.format.basetype == T::UINT ? T::UINT : is_wide ? T::FLOAT : T::HALF;
     const std::string compression = spec.get_string_attribute("compression", "zip");
+    if (lowercase(compression).starts_with("dwa")) {
+        constexpr float kDefault = 45;  // of OpenEXR
+        const int quality = quality_of(spec, 0);
+        spec.attribute("openexr:dwaCompressionLevel",
+                       quality > 0 ? static_cast<float>(quality) : kDefault);
+    }
     spec.attribute("compression", compression.substr(0, compression.find(':')));
     if (!spec.find_attribute("openexr:lineOrder"))
         spec.attribute("openexr:lineOrder", "increasingY");

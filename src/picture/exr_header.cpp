@@ -328,7 +328,9 @@ std::optional<ExrPart> read_header(exr_const_context_t file, int part, int part_
         } else if (channel.x_sampling != 1 || channel.y_sampling != 1) {
             return std::nullopt;
         }
-        result.channels.push_back({.name = std::move(name), .type = channel.pixel_type});
+        result.channels.push_back({.name = std::move(name),
+                                   .type = channel.pixel_type,
+                                   .is_perceptually_linear = channel.p_linear != 0});
     }
     if (result.channels.empty()) return std::nullopt;
     order_channels(result.channels, spec);

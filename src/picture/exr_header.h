@@ -17,7 +17,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 struct ExrChannel {
     std::string name;
     exr_pixel_type_t type = EXR_PIXEL_HALF;
-    std::size_t index = 0;  // among the spec's channels
+    std::size_t index = 0;                // among the spec's channels
+    bool is_perceptually_linear = false;  // B44 packs such channels as they are
 
     [[nodiscard]] std::size_t bytes() const { return type == EXR_PIXEL_HALF ? 2 : 4; }
 };

@@ -16,6 +16,7 @@
 #include "lut/in_parallel.h"
 #include "picture/exr_core.h"
 #include "picture/exr_header.h"
+#include "picture/exr_library.h"
 #include "picture/half.h"
 #include "picture/row_kernels.h"
 #include "tonewright/error.h"
@@ -53,11 +54,12 @@ class Block {
         const bool is_deflated =
             part.compression == EXR_COMPRESSION_ZIP || part.compression == EXR_COMPRESSION_ZIPS;
         if (!is_stored && !is_deflated) {
-            decompress(file, part_number, part, chunk, bytes);
+            const bool is_of_library = ExrLibrary::knows(part.compression);
+            is_of_library ? unpack(file, part_number, part, chunk, bytes)
+                          : decompress(file, part_number, part, chunk, bytes);
             return;
         }
-        pixels_ = make_bytes(chunk.packed_size);
-        check_exr(exr_read_chunk(file, part_number, &chunk, pixels_.get()));
+        pixels_ = stored_bytes(file, part_number, chunk);
         if (is_stored) return;
         inflate(chunk.packed_size, bytes);
         first_bytes_ = pixels_.get();
@@ -75,6 +77,13 @@ class Block {
     }
 
   private:
+    static Bytes stored_bytes(exr_const_context_t file, int part_number,
+                              const exr_chunk_info_t& chunk) {
+        Bytes bytes = make_bytes(chunk.packed_size);
+        check_exr(exr_read_chunk(file, part_number, &chunk, bytes.get()));
+        return bytes;
+    }
+
     void inflate(std::size_t packed_bytes, std::size_t bytes) {
         const std::unique_ptr<libdeflate_decompressor, InflaterCloser> inflater(
             libdeflate_alloc_decompressor());
@@ -87,7 +96,15 @@ class Block {
         kernels_->undo_differences(pixels_.get(), bytes);
     }
 
-    /// By OpenEXR's own library.
+    void unpack(exr_const_context_t file, int part_number, const ExrPart& part,
+                const exr_chunk_info_t& chunk, std::size_t bytes) {
+        const Bytes packed = stored_bytes(file, part_number, chunk);
+        pixels_ = make_bytes(bytes);
+        ExrLibrary(part.channels, static_cast<std::size_t>(chunk.width), part.compression)
+            .unpack(packed.get(), chunk.packed_size, chunk.height, pixels_.get());
+    }
+
+    /// By OpenEXR's core.
     void decompress(exr_const_context_t file, int part_number, const ExrPart& part,
                     const exr_chunk_info_t& chunk, std::size_t bytes) {
 #pragma GCC diagnostic push
@@ -235,19 +252,9 @@ class ExrReader final : public RowReader {
     unsigned threads_;
 };
 
-/// OpenEXR 3.1 has no DWAA and DWAB in its core, and takes damaged B44 for pixels.
-bool is_read(exr_compression_t compression) {
-    switch (compression) {
-        case EXR_COMPRESSION_NONE:
-        case EXR_COMPRESSION_RLE:
-        case EXR_COMPRESSION_ZIPS:
-        case EXR_COMPRESSION_ZIP:
-        case EXR_COMPRESSION_PIZ:
-        case EXR_COMPRESSION_PXR24:
-            return true;
-        default:
-            return false;
-    }
+/// Blocks of tiles are no file of their own for OpenEXR's library.
+bool is_read(const ExrPart& part) {
+    return !part.is_luminance_chroma && !(part.is_tiled && ExrLibrary::knows(part.compression));
 }
 
 /// The file has its table of blocks, which a writer adds at its end.
@@ -273,9 +280,7 @@ std::unique_ptr<RowReader> open_exr(const std::string& path, unsigned threads) {
     std::vector<ExrPart> parts;
     for (int i = 0; i < count; ++i) {
         std::optional<ExrPart> part = read_header(file.get(), i, count);
-        if (!part || part->is_luminance_chroma || !is_read(part->compression) ||
-            !is_finished(file.get(), i, *part))
-            return nullptr;
+        if (!part || !is_read(*part) || !is_finished(file.get(), i, *part)) return nullptr;
         parts.push_back(*std::move(part));
     }
     return std::make_unique<ExrReader>(std::move(file), std::move(parts), threads);

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <mutex>
@@ -23,9 +22,11 @@
 #include "base/strings.h"
 #include "base/system_files.h"
 #include "lut/in_parallel.h"
+#include "picture/compression.h"
 #include "picture/exr_attributes.h"
 #include "picture/exr_core.h"
 #include "picture/exr_header.h"
+#include "picture/exr_library.h"
 #include "picture/file_bytes.h"
 #include "picture/half.h"
 #include "picture/row_kernels.h"
@@ -154,7 +155,6 @@ class BlockEncoder {
           compression_(compression),
           order_(channels_),
           deflaters_(level) {
-        if (!is_deflated() && compression != EXR_COMPRESSION_NONE) core_.emplace(spec, compression);
         std::vector<std::size_t> by_name(channels_);
         for (std::size_t c = 0; c < channels_; ++c)
             by_name[c] = c;
@@ -163,6 +163,16 @@ class BlockEncoder {
         });
         for (std::size_t c = 0; c < channels_; ++c)
             order_[by_name[c]] = c;
+        if (ExrLibrary::knows(compression)) {
+            std::vector<ExrChannel> planes;
+            for (const std::size_t c : by_name)
+                planes.push_back(
+                    {.name = spec.channelnames[c], .type = pixel_type_of(spec.format)});
+            library_.emplace(std::move(planes), width_, compression,
+                             spec.get_float_attribute("openexr:dwaCompressionLevel"));
+        } else if (!is_deflated() && compression != EXR_COMPRESSION_NONE) {
+            core_.emplace(spec, compression);
+        }
     }
 
     /// The stored bytes.
@@ -175,6 +185,7 @@ class BlockEncoder {
             return packed.empty() ? planes_of(row_count, type, rows) : packed;
         }
         Bytes planes = planes_of(row_count, type, rows);
+        if (library_) return library_->pack(std::move(planes));
         if (!core_) return planes;
         Bytes packed = core_->run(y, planes);
         return packed.empty() ? planes : packed;
@@ -255,6 +266,7 @@ class BlockEncoder {
     std::vector<std::size_t> order_;  // of each channel, its place among the planes
     Deflaters deflaters_;
     std::optional<CoreEncoder> core_;
+    std::optional<ExrLibrary> library_;
 };
 
 class ExrWriter final : public RowWriter {
@@ -356,32 +368,9 @@ class ExrWriter final : public RowWriter {
 /// OpenEXR, where level 1 gives up to 1.03.
 int deflate_level(const PictureSpec& spec) {
     constexpr int kDefault = 2;
-    int quality = spec.get_int_attribute("CompressionQuality", -1);
-    const std::string name = spec.get_string_attribute("compression");
-    if (const std::size_t colon = name.find(':'); colon < name.size()) {
-        quality = -1;
-        std::from_chars(name.data() + colon + 1, name.data() + name.size(), quality);
-    }
+    const int quality = quality_of(spec, 0);
     if (quality < 1 || quality > 9) return kDefault;
     return quality <= 4 ? std::min(quality, kDefault) : quality;
-}
-
-/// 0 for compressions that are left to OpenImageIO: OpenEXR 3.1 has no DWAA and DWAB in its core,
-/// and its core's B44 is not compared yet.
-int rows_of_written_block(exr_compression_t compression) {
-    switch (compression) {
-        case EXR_COMPRESSION_NONE:
-        case EXR_COMPRESSION_RLE:
-        case EXR_COMPRESSION_ZIPS:
-            return 1;
-        case EXR_COMPRESSION_ZIP:
-        case EXR_COMPRESSION_PXR24:
-            return 16;
-        case EXR_COMPRESSION_PIZ:
-            return 32;
-        default:
-            return 0;
-    }
 }
 
 /// Names that the format can hold, each once.
@@ -410,8 +399,9 @@ std::unique_ptr<RowWriter> create_exr(int file, const PictureSpec& spec, unsigne
     const exr_compression_t compression =
         compression_of(lowercase(fitted.get_string_attribute("compression")))
             .value_or(EXR_COMPRESSION_ZIP);
-    const int rows_of_block = rows_of_written_block(compression);
-    if (rows_of_block == 0) return nullptr;
+    const bool is_dwa = compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB;
+    if (is_dwa && fitted.nchannels == 1) return nullptr;  // OpenImageIO 2.4 writes ZIP
+    const int rows_of_block = tonewright::rows_of_block(compression_name(compression));
     // The size of a block is a number of 31 bits.
     if (fitted.scanline_bytes() > static_cast<std::size_t>(INT32_MAX / rows_of_block))
         return nullptr;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/file_bytes.h"
 
+#include <fcntl.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -21,6 +22,12 @@ int OpenFile::patch(std::size_t place, std::string_view bytes) const {
         place += static_cast<std::size_t>(written);
     }
     return 0;
+}
+
+void OpenFile::begin_sync() const {
+#ifdef SYNC_FILE_RANGE_WRITE
+    (void)::sync_file_range(file_, 0, 0, SYNC_FILE_RANGE_WRITE);
+#endif
 }
 
 int OpenFile::close() {

@@ -45,6 +45,7 @@ class OwnFile final : public RowWriter {
     [[nodiscard]] const PictureSpec& spec() const override { return rows_->spec(); }
     void write_rows(int row_count, OIIO::TypeDesc type, const std::byte* rows) override {
         rows_->write_rows(row_count, type, rows);
+        file_.begin_sync();
     }
     void finish() override {
         rows_->finish();

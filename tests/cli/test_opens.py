@@ -137,14 +137,22 @@ def test_cache(c):
 def test_libraries(c):
     """OpenEXR to PNG, JPEG and OpenEXR loads none of OpenImageIO's libraries, and little memory."""
     write_exr(c.folder / "small.exr", {name: np.full((16, 16), 0.18, np.float32) for name in "RGB"})
-    for out, needs in (("out.png", False), ("out.jpg", False), ("out.exr", False), ("out.tif", True)):
-        counts, done = c.count(["apply", "small.exr", out, "-q"])
+    compressions = ("none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab")
+    runs = [(["small.exr", out], needs)
+            for out, needs in (("out.png", False), ("out.jpg", False), ("out.exr", False), ("out.tif", True))]
+    for compression in compressions:
+        runs += [(["small.exr", f"{compression}.exr", "--compression", compression], False),
+                 ([f"{compression}.exr", "out.png", "--input", "sRGB"], False)]
+    for arguments, needs in runs:
+        out = " ".join(arguments[1:])
+        counts, done = c.count(["apply", *arguments, "-q"])
         found = [name for name in counts if name.startswith("libOpenImageIO")]
-        c.report.check(f"small.exr to {out}: exit code", done.returncode == 0, done.stderr.decode(errors="replace"))
-        c.report.check(f"small.exr to {out}: {'needs' if needs else 'does without'} OpenImageIO", bool(found) == needs, found)
+        c.report.check(f"{arguments[0]} to {out}: exit code", done.returncode == 0, done.stderr.decode(errors="replace"))
+        c.report.check(f"{arguments[0]} to {out}: {'needs' if needs else 'does without'} OpenImageIO", bool(found) == needs,
+                       found)
         # Its pixels, and its color profile.
-        c.report.check(f"small.exr to {out}: opens it twice at most", needs or 1 <= counts.get("small.exr", 0) <= 2,
-                       counts.get("small.exr"))
+        c.report.check(f"{arguments[0]} to {out}: opens it twice at most", needs or 1 <= counts.get(arguments[0], 0) <= 2,
+                       counts.get(arguments[0]))
     if is_sanitized(c.command):
         return
     done = subprocess.run([sys.executable, "-c", MEMORY, c.command, "apply", "small.exr", "out.png", "-q"], cwd=c.folder,

@@ -2,7 +2,6 @@
 #include "tasks/pictures/apply.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -317,18 +316,8 @@ double begin_of_writing(const ExposureRequest& exposure) {
     return exposure.rule || exposure.takes_sequence ? kMetered : 0;
 }
 
-/// Each frame allocates the buffers that the one before it freed. The allocator keeps them instead
-/// of returning them to the system, which would clear their pages again: for 40 HD frames as JPEG,
-/// 190,000 page faults instead of 410,000.
-void keep_freed_memory() {
-    constexpr int kMostThreshold = 32 << 20;  // glibc refuses more: malloc/malloc.c, HEAP_MAX_SIZE
-    ::mallopt(M_MMAP_THRESHOLD, kMostThreshold);
-    ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
-}
-
 void run(const Tonemapper& tonemapper, std::vector<FrameFiles>& files, SequenceOptions sequence,
          const ApplyOptions& options, PictureMessages& messages, const char* unit, double from) {
-    if (files.size() > 1) keep_freed_memory();
     {
         const QuietStderr quiet;
         Progress progress(

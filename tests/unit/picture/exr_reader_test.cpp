@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tonewright/error.h"
@@ -21,6 +22,12 @@ namespace {
 
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
+
+/// Blocks of tiles are left to OpenImageIO for those compressions of OpenEXR that are in its C++
+/// library.
+bool has_tiles(std::string_view compression) {
+    return !compression.starts_with("b44") && !compression.starts_with("dwa");
+}
 
 /// Compares both readers.
 void expect_same_reading(const std::string& path, int step = 64) {
@@ -51,6 +58,7 @@ TEST_P(ExrReaderOf, GivesThePixelsAndAttributesOfOpenImageIO) {
         for (const auto& names : channels) {
             for (const auto& [width, height] : {std::pair(1, 1), {37, 21}, {131, 100}}) {
                 for (const int tile : {0, 16, 48}) {
+                    if (tile > 0 && !has_tiles(GetParam())) continue;
                     ImageSpec spec = spec_of_size(width, height, names, type);
                     spec.attribute("compression", GetParam());
                     spec.tile_width = tile;
@@ -71,6 +79,7 @@ TEST_P(ExrReaderOf, GivesThePixelsAndAttributesOfOpenImageIO) {
 TEST_P(ExrReaderOf, ConvertsChannelsOfDifferentTypesToFloat) {
     const Folder folder;
     for (const int tile : {0, 32}) {
+        if (tile > 0 && !has_tiles(GetParam())) continue;
         ImageSpec spec = spec_of_size(45, 70, {"R", "G", "B", "A", "Z", "id"}, OIIO::TypeHalf);
         spec.channelformats = {OIIO::TypeHalf,  OIIO::TypeHalf,  OIIO::TypeHalf,
                                OIIO::TypeFloat, OIIO::TypeFloat, OIIO::TypeUInt32};
@@ -126,7 +135,8 @@ TEST_P(ExrReaderOf, ReadsDamagedFilesAsOpenImageIOOrNotAtAll) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ExrReaderOf,
-                         testing::Values("none", "rle", "zips", "zip", "piz", "pxr24"),
+                         testing::Values("none", "rle", "zips", "zip", "piz", "pxr24", "b44",
+                                         "b44a", "dwaa", "dwab"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST(ExrReader, ReadsPartsOfAFile) {
@@ -161,6 +171,7 @@ TEST(ExrReader, LeavesOthersToOpenImageIO) {
     EXPECT_FALSE(open_exr(folder / "empty.exr", 1));
     EXPECT_FALSE(open_exr(folder.path(), 1));
     ImageSpec spec = spec_of_size(45, 70, {"R", "G", "B"}, OIIO::TypeHalf);
+    spec.tile_width = spec.tile_height = 32;
     for (const char* compression : {"b44", "b44a", "dwaa", "dwab"}) {
         spec.attribute("compression", compression);
         write_by_oiio(folder / "other.exr", {spec}, 7);

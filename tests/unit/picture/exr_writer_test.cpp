@@ -14,6 +14,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tonewright/error.h"
@@ -35,6 +36,7 @@ TEST_P(ExrWriterOf, WritesThePixelsAndAttributesOfOpenImageIO) {
     unsigned seed = 0;
     for (const TypeDesc& type : {OIIO::TypeHalf, OIIO::TypeFloat, OIIO::TypeUInt32}) {
         for (const auto& names : channels) {
+            if (names.size() == 1 && std::string_view(GetParam()).starts_with("dwa")) continue;
             for (const auto& [width, height] : {std::pair(1, 1), {37, 21}, {131, 100}}) {
                 ImageSpec spec = spec_of_size(width, height, names, type);
                 spec.attribute("compression", GetParam());
@@ -61,8 +63,13 @@ TEST_P(ExrWriterOf, StoresBlocksThatDoNotBecomeSmaller) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ExrWriterOf,
-                         testing::Values("none", "rle", "zips", "zip", "piz", "pxr24"),
-                         [](const auto& test) { return std::string(test.param); });
+                         testing::Values("none", "rle", "zips", "zip", "piz", "pxr24", "b44",
+                                         "b44a", "dwaa", "dwab", "dwaa:200", "dwab:1"),
+                         [](const auto& test) {
+                             std::string name = test.param;
+                             std::replace(name.begin(), name.end(), ':', '_');
+                             return name;
+                         });
 
 TEST(ExrWriter, RoundsFloatsAsOpenImageIO) {
     const std::vector<float> hard = {0.0F,
@@ -113,8 +120,11 @@ TEST(ExrWriter, LeavesOthersToOpenImageIO) {
     EXPECT_TRUE(is_left([](PictureSpec& spec) {
         spec.channelformats = {OIIO::TypeHalf, OIIO::TypeHalf, OIIO::TypeFloat};
     }));
-    EXPECT_TRUE(is_left([](PictureSpec& spec) { spec.attribute("compression", "dwaa"); }));
-    EXPECT_TRUE(is_left([](PictureSpec& spec) { spec.attribute("compression", "b44"); }));
+    EXPECT_TRUE(is_left([](PictureSpec& spec) {
+        spec.nchannels = 1;
+        spec.channelnames = {"Y"};
+        spec.attribute("compression", "dwaa");
+    }));
     EXPECT_TRUE(
         is_left([](PictureSpec& spec) { spec.attribute("openexr:lineOrder", "decreasingY"); }));
     EXPECT_TRUE(is_left([](PictureSpec& spec) { spec.channelnames[0] = std::string(256, 'a'); }));

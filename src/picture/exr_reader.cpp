@@ -54,9 +54,11 @@ class Block {
         const bool is_deflated =
             part.compression == EXR_COMPRESSION_ZIP || part.compression == EXR_COMPRESSION_ZIPS;
         if (!is_stored && !is_deflated) {
-            const bool is_of_library = ExrLibrary::knows(part.compression);
-            is_of_library ? unpack(file, part_number, part, chunk, bytes)
-                          : decompress(file, part_number, part, chunk, bytes);
+            if (ExrLibrary::knows(part.compression)) {
+                unpack(file, part_number, part, chunk, bytes);
+            } else {
+                decompress(file, part_number, part, chunk, bytes);
+            }
             return;
         }
         pixels_ = stored_bytes(file, part_number, chunk);

@@ -102,8 +102,13 @@ class Block {
                 const exr_chunk_info_t& chunk, std::size_t bytes) {
         const Bytes packed = stored_bytes(file, part_number, chunk);
         pixels_ = make_bytes(bytes);
-        ExrLibrary(part.channels, static_cast<std::size_t>(chunk.width), part.compression)
-            .unpack(packed.get(), chunk.packed_size, chunk.height, pixels_.get());
+        const ExrLibrary library(part.channels, static_cast<std::size_t>(chunk.width),
+                                 part.compression);
+        try {
+            library.unpack(packed.get(), chunk.packed_size, chunk.height, pixels_.get());
+        } catch (const FileError&) {  // its message names the file in memory
+            throw_damaged();
+        }
     }
 
     /// By OpenEXR's core.
@@ -130,7 +135,12 @@ class Block {
             to += static_cast<std::size_t>(chunk.width) * part.channels[c].bytes();
         }
         check_exr(exr_decoding_choose_default_routines(file, part_number, &decoder));
-        check_exr(exr_decoding_run(file, part_number, &decoder));
+        const exr_result_t result = exr_decoding_run(file, part_number, &decoder);
+        // The library's messages are about its own steps.
+        if (result != EXR_ERR_SUCCESS && result != EXR_ERR_OUT_OF_MEMORY &&
+            result != EXR_ERR_READ_IO)
+            throw_damaged();
+        check_exr(result);
     }
 
     const RowKernels* kernels_;

@@ -91,6 +91,7 @@ class CoreEncoder {
         exr_context_t opened = nullptr;
         check_exr(exr_start_write(&opened, "nowhere", EXR_WRITE_FILE_DIRECTLY, &options));
         file_.reset(opened);
+        check_exr(exr_set_longname_support(opened, 1));
         int part = 0;
         check_exr(exr_add_part(opened, nullptr, EXR_STORAGE_SCANLINE, &part));
         const exr_attr_box2i_t window = {{{{spec.x, spec.y}}},

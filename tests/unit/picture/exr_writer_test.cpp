@@ -31,8 +31,12 @@ using OIIO::TypeDesc;
 class ExrWriterOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(ExrWriterOf, WritesThePixelsAndAttributesOfOpenImageIO) {
-    const std::vector<std::vector<std::string>> channels = {
-        {"Y"}, {"R", "G", "B"}, {"R", "G", "B", "A"}, {"v", "u"}, {"a.R", "a.G", "b.Z", "A", "Z"}};
+    const std::vector<std::vector<std::string>> channels = {{"Y"},
+                                                            {"R", "G", "B"},
+                                                            {"R", "G", "B", "A"},
+                                                            {"v", "u"},
+                                                            {"a.R", "a.G", "b.Z", "A", "Z"},
+                                                            {"R", "G", "B", std::string(255, 'm')}};
     unsigned seed = 0;
     for (const TypeDesc& type : {OIIO::TypeHalf, OIIO::TypeFloat, OIIO::TypeUInt32}) {
         for (const auto& names : channels) {

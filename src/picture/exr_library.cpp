@@ -98,7 +98,7 @@ Imf::FrameBuffer frame_buffer(const std::vector<ExrChannel>& channels, std::size
     return buffer;
 }
 
-/// What stands in a file before its only block: magic number, version, header, and the table, which
+/// The bytes of a file before its only block: magic number, version, header, and the table, which
 /// has a zero until the block is written.
 Bytes file_without_block(const Imf::Header& header) {
     MemoryOut stream;

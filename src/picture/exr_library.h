@@ -43,6 +43,7 @@ class ExrLibrary {
     /// @param planes  rows of planes of channels
     /// @returns  what a file holds; as large as the planes if it is not smaller
     [[nodiscard]] std::vector<std::uint8_t> pack(std::vector<std::uint8_t> planes) const;
+    /// @param packed_bytes  at least 1
     /// @throws FileError  damaged
     void unpack(const std::uint8_t* packed, std::size_t packed_bytes, int row_count,
                 std::uint8_t* planes) const;

@@ -102,7 +102,7 @@ Imf::FrameBuffer frame_buffer(const std::vector<ExrChannel>& channels, std::size
 /// has a zero until the block is written.
 Bytes file_without_block(const Imf::Header& header) {
     MemoryOut stream;
-    Imf::OutputFile(stream, header, 0);
+    { const Imf::OutputFile file(stream, header, 0); }
     return std::move(stream.bytes);
 }
 

@@ -130,7 +130,7 @@ class Block {
         for (std::size_t c = 0; c < part.channels.size(); ++c) {
             exr_coding_channel_info_t& channel = decoder.channels[c];
             channel.decode_to_ptr = to;
-            channel.user_pixel_stride = channel.bytes_per_element;
+            channel.user_pixel_stride = static_cast<std::uint8_t>(channel.bytes_per_element);
             channel.user_line_stride = static_cast<std::int32_t>(row_bytes_);
             to += static_cast<std::size_t>(chunk.width) * part.channels[c].bytes();
         }

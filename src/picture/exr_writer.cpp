@@ -127,7 +127,7 @@ class CoreEncoder {
         for (int c = 0; c < encoder.channel_count; ++c) {
             exr_coding_channel_info_t& channel = encoder.channels[c];
             channel.encode_from_ptr = from;
-            channel.user_pixel_stride = channel.bytes_per_element;
+            channel.user_pixel_stride = static_cast<std::uint8_t>(channel.bytes_per_element);
             channel.user_line_stride =
                 static_cast<std::int32_t>(planes.size() / static_cast<std::size_t>(chunk.height));
             from += static_cast<std::size_t>(chunk.width) *
@@ -166,6 +166,7 @@ class BlockEncoder {
             order_[by_name[c]] = c;
         if (ExrLibrary::knows(compression)) {
             std::vector<ExrChannel> planes;
+            planes.reserve(channels_);
             for (const std::size_t c : by_name)
                 planes.push_back(
                     {.name = spec.channelnames[c], .type = pixel_type_of(spec.format)});
@@ -179,7 +180,7 @@ class BlockEncoder {
     /// The stored bytes.
     /// @param y     of the first row
     /// @param rows  interleaved, of `type`
-    Bytes run(int y, int row_count, T type, const std::byte* rows) {
+    Bytes run(int y, int row_count, const T& type, const std::byte* rows) {
         // A block of the size of its planes holds them as they are: readers know it by the size.
         if (is_deflated()) {
             Bytes packed = deflaters_.run(predicted(row_count, type, rows));
@@ -202,7 +203,7 @@ class BlockEncoder {
 
     /// Planes of channels by name, row after row, to a function of (row, bytes).
     template <class F>
-    void for_each_row(int row_count, T type, const std::byte* rows, std::uint8_t* to,
+    void for_each_row(int row_count, const T& type, const std::byte* rows, std::uint8_t* to,
                       std::size_t to_step, const F& use) const {
         const RowKernels& kernels = row_kernels().front();
         const bool converts = type != type_;
@@ -223,7 +224,7 @@ class BlockEncoder {
         }
     }
 
-    void convert(T from_type, const std::byte* from, std::uint8_t* to) const {
+    void convert(const T& from_type, const std::byte* from, std::uint8_t* to) const {
         for (std::size_t i = 0; i < width_ * channels_; ++i) {
             if (from_type == T::FLOAT) {
                 float value = 0;
@@ -239,14 +240,14 @@ class BlockEncoder {
         }
     }
 
-    Bytes planes_of(int row_count, T type, const std::byte* rows) const {
+    Bytes planes_of(int row_count, const T& type, const std::byte* rows) const {
         Bytes planes(row_bytes() * static_cast<std::size_t>(row_count));
         for_each_row(row_count, type, rows, planes.data(), row_bytes(), [](std::size_t) {});
         return planes;
     }
 
     /// First the even bytes of all planes, then the odd ones, as differences.
-    Bytes predicted(int row_count, T type, const std::byte* rows) const {
+    Bytes predicted(int row_count, const T& type, const std::byte* rows) const {
         const RowKernels& kernels = row_kernels().front();
         Bytes row_planes(row_bytes());
         Bytes bytes(row_bytes() * static_cast<std::size_t>(row_count));
@@ -281,7 +282,7 @@ class ExrWriter final : public RowWriter {
           threads_(threads) {
         const std::string header = exr_header_of(spec_, compression);
         table_place_ = header.size();
-        const auto blocks = static_cast<std::size_t>((spec_.height - 1) / rows_of_block + 1);
+        const auto blocks = static_cast<std::size_t>((spec_.height - 1) / rows_of_block) + 1;
         table_.reserve(blocks);
         end_ = table_place_ + blocks * sizeof(std::uint64_t);
         write_all(file_, header.data(), header.size());

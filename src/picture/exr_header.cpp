@@ -194,6 +194,7 @@ void add_attribute(PictureSpec& spec, const exr_attribute_t& attribute) {
             return add_rational(spec, name, *attribute.rational);
         case EXR_ATTR_STRING_VECTOR: {
             std::vector<std::string> texts;
+            texts.reserve(static_cast<std::size_t>(attribute.stringvector->n_strings));
             for (int i = 0; i < attribute.stringvector->n_strings; ++i)
                 texts.push_back(text_of(attribute.stringvector->strings[i]));
             if (!texts.empty()) add(T(T::STRING, static_cast<int>(texts.size())), texts.data());

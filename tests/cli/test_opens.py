@@ -19,7 +19,7 @@ import pytest
 from pictures import ALL, need_program, run, skip, write_exr
 from sanitizers import is_sanitized
 
-pytestmark = pytest.mark.share(2)
+pytestmark = pytest.mark.share(3)
 
 # KiB that a program has at most, of a process that has run no other.
 MEMORY = """import resource, subprocess, sys

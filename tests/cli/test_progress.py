@@ -14,7 +14,7 @@ import subprocess
 import pytest
 from shots import contents, make_shot
 
-pytestmark = pytest.mark.share(2)
+pytestmark = pytest.mark.share(3)
 
 OK, FAILED, USAGE, FILE = 0, 1, 2, 3
 HABLE = ["--operator", "hable", "--display", "linear"]
